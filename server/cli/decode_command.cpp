@@ -6,16 +6,21 @@
 #include "server/cli/commands.hpp"
 #include "server/cli/options.hpp"
 #include "server/cli/shipped_paths.hpp"
+#include "server/cli/useless_segments.hpp"
 #include "server/cli/xtce_file.hpp"
 #include "telemetry/container_decoder.hpp"
 #include "telemetry/packet_source.hpp"
 #include "telemetry/packet_time.hpp"
 
+#include <algorithm>
+#include <cerrno>
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fstream>
 #include <map>
 #include <memory>
 #include <set>
+#include <unistd.h>
 #include <vector>
 
 namespace aeolis::server {
@@ -186,6 +191,16 @@ bool print_losses(const telemetry::PacketSource& source, const Printed& printed)
            printed.problems().empty() && all_read;
 }
 
+/// How many octets from `at` on a sparse file does not store.
+std::uint64_t hole_octets(const std::filesystem::path& name, std::uint64_t at) {
+    const int file = ::open(name.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0) return 0;
+    off_t stored = ::lseek(file, static_cast<off_t>(at), SEEK_DATA);
+    if (stored < 0 && errno == ENXIO) stored = ::lseek(file, 0, SEEK_END);
+    ::close(file);
+    return stored > static_cast<off_t>(at) ? static_cast<std::uint64_t>(stored) - at : 0;
+}
+
 /// Prints any mission's packets by its XTCE file; returns 0 when every octet was decoded.
 int decode(const DecodeOptions& options) {
     if (!telemetry::downlink_format(options.format.name))
@@ -217,14 +232,32 @@ int decode(const DecodeOptions& options) {
     const auto take = [&] {
         while (const auto packet = source.next()) printed.add(*packet);
     };
-    for (; !octets.empty(); octets = read_piece()) {
+    // No frame that begins at a sync marker lies in a hole: but for a piece at either end of it, it is passed over.
+    const bool by_marker = options.format.name == "pltu" || options.format.name == "cadu";
+    UselessSegments segments;
+    std::uint64_t at = 0, in_holes = 0;
+    std::string stopped;
+    for (; !octets.empty() && stopped.empty(); octets = read_piece()) {
         source.receive(octets);
         take();
+        at += octets.size();
+        if (segments.add(source.packets()))
+            stopped = fmt::format("stopped at octet {}: more than {} segments in a row are of no packet (zeros?); look "
+                                  "at --format, and whether this is the right file",
+                                  at, UselessSegments::in_a_row_max);
+        if (!by_marker || std::ranges::any_of(octets, [](std::uint8_t octet) { return octet != 0; })) continue;
+        const std::uint64_t hole = hole_octets(options.packets, at);
+        if (hole <= 2 * piece_octets) continue;
+        in_holes += hole - piece_octets;
+        at += hole - piece_octets;
+        in.seekg(static_cast<std::streamoff>(at));
     }
     source.end();
     take();
     printed.print_kinds();
-    const bool all_decoded = print_losses(source, printed);
+    const bool all_decoded = print_losses(source, printed) && in_holes == 0;
+    if (in_holes > 0) fmt::print(stderr, "holes: {} octets that the file does not store were passed over\n", in_holes);
+    if (!stopped.empty()) return failed(options.packets.string() + ": " + stopped);
     if (const auto words = nothing_found(options.format, source.link(), source.packets(), !source.sequences().empty());
         !words.empty())
         return failed(options.packets.string() + ": " + words);

@@ -6,6 +6,7 @@
 #include "server/cli/commands.hpp"
 #include "server/cli/ingest_tones.hpp"
 #include "server/cli/options.hpp"
+#include "server/cli/useless_segments.hpp"
 #include "server/cli/xtce_file.hpp"
 #include "server/pipeline/pipeline_thread.hpp"
 #include "telemetry/station/foreign_station.hpp"
@@ -297,6 +298,17 @@ class Ingest {
         downlink.octets.push_back(
             {telemetry::downlink_link, piece.ert, {piece.octets.begin(), piece.octets.end()}, piece.datagram});
         collect(station_.receive(std::move(downlink)));
+        unchecked_octets_ += piece.octets.size();
+        if (unchecked_octets_ >= window_octets) {
+            unchecked_octets_ = 0;
+            if (segments_.add(station_.totals(piece.ert).packets)) {
+                fault(
+                    fmt::format("stopped: more than {} segments in a row are of no packet (zeros?); look at --format, "
+                                "and whether this is the right file",
+                                UselessSegments::in_a_row_max));
+                return false;
+            }
+        }
         const bool due = delivery_.entries.size() >= ingest_delivery_entries || options_.pace > 0.0;
         return !due || hand_over().ok();
     }
@@ -330,6 +342,8 @@ class Ingest {
     Ert now_, passed_, first_;
     std::chrono::steady_clock::time_point started_;
     std::uint64_t packets_ = 0, faults_ = 0;
+    UselessSegments segments_;
+    std::size_t unchecked_octets_ = 0;
     bool began_ = false;
 };
 

@@ -967,6 +967,50 @@ TEST_CASE("decode corrects what Reed-Solomon codeblocks hold, says how much, and
     }
 }
 
+TEST_CASE("a sparse file of 100 GB is told in one line, and what is stored behind a hole is read",
+          "[cli][decode][R54]") {
+    if (program().empty()) return;
+    using namespace aeolis;
+    const aeolis::test::TemporaryFolder folder;
+    const auto path = [&](const char* name) { return "'" + (folder / name).string() + "'"; };
+    std::ofstream{folder / "m.xml"}
+        << "<SpaceSystem name='T'><TelemetryMetaData><ParameterTypeSet><IntegerParameterType name='u64'>"
+           "<IntegerDataEncoding sizeInBits='64'/></IntegerParameterType></ParameterTypeSet><ParameterSet>"
+           "<Parameter name='H' parameterTypeRef='u64'/></ParameterSet><ContainerSet><SequenceContainer name='P'>"
+           "<EntryList><ParameterRefEntry parameterRef='H'/></EntryList></SequenceContainer></ContainerSet>"
+           "</TelemetryMetaData></SpaceSystem>";
+    const auto grow = [&](const char* name, std::uintmax_t octets) {
+        std::error_code error;
+        std::ofstream{folder / name, std::ios::app | std::ios::binary};
+        std::filesystem::resize_file(folder / name, octets, error);
+        return !error;  // not every file system has such files
+    };
+    constexpr std::uintmax_t large = 100'000'000'000U;
+    if (!grow("zeros.bin", large)) return;
+    for (const std::string& command :
+         {"decode --packets " + path("zeros.bin"), "ingest --archive " + path("a.db") + " " + path("zeros.bin")}) {
+        const auto ended = run(program(), command + " --format packets --xtce " + path("m.xml"));
+        INFO(ended.text);
+        CHECK(ended.code == 1);
+        CHECK_THAT(ended.text, Catch::Contains("more than 100000 segments in a row are of no packet"));
+    }
+    const auto put = [&](std::uint8_t sequence) {
+        const std::vector<std::uint8_t> packet{0x01, 0x23, 0xC0, sequence, 0, 1, 0, sequence};
+        std::vector<std::uint8_t> pltu(pltu_octets_max);
+        pltu.resize(write_pltu({.spacecraft = 9, .sequence = sequence}, packet, pltu));
+        std::ofstream out{folder / "holes.bin", std::ios::app | std::ios::binary};
+        out.write(reinterpret_cast<const char*>(pltu.data()), static_cast<std::streamsize>(pltu.size()));
+    };
+    put(0);
+    REQUIRE(grow("holes.bin", large + 12'345));
+    put(1);
+    const auto read =
+        run(program(), "decode --format pltu --packets " + path("holes.bin") + " --xtce " + path("m.xml"));
+    INFO(read.text);
+    CHECK(read.code == 1);
+    CHECK_THAT(read.text, Catch::Contains("         2 packets") && Catch::Contains("that the file does not store"));
+}
+
 TEST_CASE("a recorded capture becomes a run, and what is exported of it is what was ingested", "[cli][ingest][R55]") {
     if (program().empty()) return;
     using namespace aeolis;
@@ -1077,6 +1121,18 @@ TEST_CASE("a recorded capture becomes a run, and what is exported of it is what 
     CHECK(exported("4 --packets --format bin") == plain);
     const auto late = exported("4 --raw --from 2012-219T05:10:07 --to 2012-219T05:10:08");
     CHECK((!late.empty() && plain.find(late) != std::string::npos));
+    // Of a stream the pieces end anywhere: exported as a capture they are marked, and make the same stream again.
+    const auto again = ingest(write("again.pcap", exported("3 --raw --format pcap")));
+    INFO(again.text);
+    CHECK(again.code == 0);
+    CHECK_THAT(again.text, Catch::Contains("300 packets of 2400 octets"));
+    std::string two = exported("3 --raw --format pcap");
+    server::pcap::append(two, Ert{397'500'099'000'000}, 4201, bad, true);
+    const auto other = ingest(write("two.pcap", two));
+    CHECK(other.code == 1);
+    CHECK_THAT(other.text,
+               Catch::Contains("1 pieces of other streams than that to port 4200; say which by --udp-port") &&
+                   Catch::Contains("300 packets of 2400 octets"));
     const auto no_packets = run(program(), "export --archive " + archive + " --run 1 --packets --link relay");
     INFO(no_packets.text);
     CHECK(no_packets.code == 1);
@@ -1121,18 +1177,6 @@ TEST_CASE("a landing's samples and their predict are made together, and decode r
 TEST_CASE("a fixed oscillator's Doppler is removed from SigMF samples, and options that contradict a file are told",
           "[cli][tones][R56]") {
     if (program().empty()) return;
-    // Of a stream the pieces end anywhere: exported as a capture they are marked, and make the same stream again.
-    const auto again = ingest(write("again.pcap", exported("3 --raw --format pcap")));
-    INFO(again.text);
-    CHECK(again.code == 0);
-    CHECK_THAT(again.text, Catch::Contains("300 packets of 2400 octets"));
-    std::string two = exported("3 --raw --format pcap");
-    server::pcap::append(two, Ert{397'500'099'000'000}, 4201, bad, true);
-    const auto other = ingest(write("two.pcap", two));
-    CHECK(other.code == 1);
-    CHECK_THAT(other.text,
-               Catch::Contains("1 pieces of other streams than that to port 4200; say which by --udp-port") &&
-                   Catch::Contains("300 packets of 2400 octets"));
     const aeolis::test::TemporaryFolder folder;
     std::ofstream{folder / "tones.csv"} << "start_s,tone\n3,17\n13,200\n23,99\n";
     std::ofstream{folder / "doppler.csv"} << "time_s,doppler_hz\n0,-5000\n20,4000\n40,6000\n";
@@ -1207,6 +1251,18 @@ TEST_CASE("a pass recorded elsewhere becomes a run with its tones, carrier, spec
     // These are no samples, and of packets the mission is missing.
     CHECK(run(program(), "ingest " + archive + path("tones.csv")).code == 2);
 
+    // A carrier that bears no tone, as audio seems to have one: the run ends as decoding does.
+    const auto bare =
+        run(program(), "tones simulate --length 40 --c-n0 30 --format ci16 --rate 8192 --out" + path("b.sigmf-meta"));
+    INFO(bare.text);
+    REQUIRE(bare.code == 0);
+    for (const std::string& command :
+         {"ingest " + archive + path("b.sigmf-meta"), "tones decode --samples" + path("b.sigmf-data")}) {
+        const auto ended = run(program(), command);
+        CHECK(ended.code == 1);
+        CHECK_THAT(ended.text, Catch::Contains("and no tone on it; is 8192 Hz its rate?"));
+    }
+
     const auto silent = run(program(), "tones simulate --tones" + path("tones.csv") +
                                            " --c-n0 0 --length 30 --format ci16 --out" + path("n.sigmf-meta"));
     REQUIRE(silent.code == 0);
@@ -1263,18 +1319,6 @@ TEST_CASE("the explanations in docs are those that the program prints", "[.long]
     const aeolis::test::TemporaryFolder folder;
     const std::string archive = "'" + (folder / "landing.db").string() + "'";
     REQUIRE(run(program(), "rehearse --scenario nominal_auto --seed 1 --archive " + archive).code == 0);
-    // A carrier that bears no tone, as audio seems to have one: the run ends as decoding does.
-    const auto bare =
-        run(program(), "tones simulate --length 40 --c-n0 30 --format ci16 --rate 8192 --out" + path("b.sigmf-meta"));
-    INFO(bare.text);
-    REQUIRE(bare.code == 0);
-    for (const std::string& command :
-         {"ingest " + archive + path("b.sigmf-meta"), "tones decode --samples" + path("b.sigmf-data")}) {
-        const auto ended = run(program(), command);
-        CHECK(ended.code == 1);
-        CHECK_THAT(ended.text, Catch::Contains("and no tone on it; is 8192 Hz its rate?"));
-    }
-
     const auto printed = run(program(), "report --explanations --run 1 --archive " + archive);
     REQUIRE(printed.code == 0);
     const std::string page = AEOLIS_SOURCE_DIR "/docs/explanations.md";
