@@ -13,6 +13,7 @@
 #include <ctime>
 #include <fmt/format.h>
 #include <functional>
+#include <numbers>
 #include <optional>
 
 namespace aeolis::server {
@@ -26,6 +27,7 @@ double cpu_s() {
 
 struct Heard {
     std::vector<telemetry::ToneReception> receptions;
+    std::vector<telemetry::CarrierReport> carrier;
     double cpu_s = 0.0;  ///< of the receiver alone
 };
 
@@ -45,8 +47,10 @@ Heard hear(const MfskWaveform& waveform, const simulation::XBandPath& path,
         receiver->push(block);
         for (auto& reception : receiver->take()) heard.receptions.push_back(reception);
         heard.cpu_s += cpu_s() - before_s;
+        for (auto& report : receiver->take_carrier()) heard.carrier.push_back(report);
     }
     receiver->finish();
+    for (auto& report : receiver->take_carrier()) heard.carrier.push_back(report);
     for (auto& reception : receiver->take()) heard.receptions.push_back(reception);
     return heard;
 }
@@ -240,6 +244,54 @@ LandingTones landing_tones(const FlownSignal& nominal, const simulation::Scenari
     return result;
 }
 
+SwingCount swings(const MfskWaveform& waveform, double total_c_n0_dbhz, std::uint64_t runs, std::uint64_t seed) {
+    constexpr double length_s = 90.0, step_s = 1.0 / 64.0, report_s = 0.125, turn = 2.0 * std::numbers::pi;
+    SwingCount count;
+    for (; count.runs < runs; ++count.runs) {
+        simulation::Random random{seed, count.runs, simulation::Stream::x_band};
+        const auto between = [&](double least, double most) { return least + (most - least) * random.uniform(); };
+        const double step_hz = between(60.0, 250.0) * (random.uniform() < 0.5 ? -1.0 : 1.0),
+                     swing_hz = between(5.0, 40.0), swings_a_second = between(0.5, 2.0),
+                     rate_hzps = between(-20.0, 20.0), opens_s = between(28.0, 36.0), fades_s = between(10.0, 30.0);
+        std::vector<double> time_s, doppler_hz;
+        for (double t = 0.0; t <= length_s + 1.0; t += step_s) {
+            const double since_s = std::max(t - opens_s, 0.0);
+            time_s.push_back(t);
+            doppler_hz.push_back(200.0 + 3.0 * std::min(t, opens_s) - step_hz * (1.0 - std::exp(-since_s / 0.5)) +
+                                 rate_hzps * std::min(since_s, 20.0) +
+                                 swing_hz * std::sin(turn * swings_a_second * since_s) * std::exp(-since_s / fades_s));
+        }
+        std::vector<simulation::SentTone> tones;
+        for (double at_s = between(6.0, 7.0); at_s + waveform.symbol_s < length_s; at_s += waveform.symbol_s)
+            tones.push_back({at_s, static_cast<std::uint8_t>(random.bits() & 0xff)});
+        simulation::XBandPath path;
+        path.rate_hz = 8192.0;
+        path.total_c_n0_dbhz = total_c_n0_dbhz;
+        path.doppler_hz = TimeTable::make(std::move(time_s), std::move(doppler_hz)).value();
+        const Heard heard = hear(waveform, path, tones, length_s, seed + count.runs);
+        count.sent += tones.size();
+        for (const simulation::SentTone& sent : tones) {
+            const auto* reception = in_place_of(sent, heard.receptions);
+            if (reception == nullptr || !reception->tone) continue;
+            ++(reception->tone == sent.tone ? count.decoded : count.wrong);
+        }
+        count.wrong += static_cast<std::uint64_t>(std::ranges::count_if(heard.receptions, [&](const auto& each) {
+            return each.tone && std::ranges::none_of(tones, [&](const simulation::SentTone& sent) {
+                       return std::abs(each.start_s - sent.start_s) <= 5.0;
+                   });
+        }));
+        double blind_s = 0.0;
+        bool found = false;
+        for (const telemetry::CarrierReport& report : heard.carrier) {
+            const bool follows = report.lock <= CarrierLock::fluctuating;
+            found = found || follows;
+            blind_s = follows || !found ? 0.0 : blind_s + report_s;
+            count.blind_s = std::max(count.blind_s, blind_s);
+        }
+    }
+    return count;
+}
+
 bool tell_tone_figures(const dictionary::Dictionary& dictionary, const simulation::Scenario& landing,
                        const simulation::Scenario& dispersed, bool full,
                        const std::function<void(const ToneFigure&)>& tell) {
@@ -322,6 +374,10 @@ bool tell_tone_figures(const dictionary::Dictionary& dictionary, const simulatio
          ""});
     const double wide_ms = landing_tones(nominal, dispersed, dictionary, total_dbhz, whole_band_hz, 1).cpu_ms_a_second;
     add({"receiver, samples at 100 kHz", wide_ms, 15.0, "ms of CPU a second", wide_ms <= 15.0, ""});
+    const SwingCount swung = swings(mfsk, total_dbhz, full ? 200 : 20, 10);
+    add({"step and swing at 22 dB-Hz: wrong", static_cast<double>(swung.wrong), 0.0, "tones", swung.wrong == 0,
+         fmt::format("{} runs: {} tones sent, {} decoded", swung.runs, swung.sent, swung.decoded)});
+    add({"step and swing at 22 dB-Hz: blind", swung.blind_s, 10.0, "s at most", swung.blind_s <= 10.0, ""});
     const SignalLanding whole = signal_landing(landing, dictionary);
     add({"a landing with its tones from samples", whole.real_time_factor, 20.0, "x real time",
          whole.real_time_factor >= 20.0,

@@ -198,6 +198,57 @@ TEST_CASE("over all kinds and levels of spoiled samples no tone is wrong, and li
     }
 }
 
+/// A landing's carrier that steps by 60 to 250 Hz as a parachute opens, and swings under it by 5 to 40 Hz, 0.5 to 2 times
+/// a second.
+Signal swinging(std::uint64_t seed) {
+    std::mt19937_64 random{seed * 7919 + 3};
+    const auto between = [&](double least, double most) {
+        return std::uniform_real_distribution<double>{least, most}(random);
+    };
+    Signal signal;
+    signal.seed = seed + 1000;
+    signal.length_s = 90.0;
+    signal.tones = tones_until(signal.length_s, seed + 1);
+    const double step_hz = between(60.0, 250.0) * (random() % 2 == 0 ? -1.0 : 1.0), swing_hz = between(5.0, 40.0);
+    const double swings_a_second = between(0.5, 2.0), rate_hzps = between(-20.0, 20.0);
+    const double opens_s = between(28.0, 36.0), fades_s = between(10.0, 30.0);
+    signal.frequency_hz = [=](double t) {
+        const double before_hz = 200.0 + 3.0 * std::min(t, opens_s), since_s = t - opens_s;
+        if (since_s < 0.0) return before_hz;
+        return before_hz - step_hz * (1.0 - std::exp(-since_s / 0.5)) + rate_hzps * std::min(since_s, 20.0) +
+               swing_hz * std::sin(2.0 * std::numbers::pi * swings_a_second * since_s) * std::exp(-since_s / fades_s);
+    };
+    return signal;
+}
+
+Count check_swings(std::uint64_t runs) {
+    Count all;
+    for (std::uint64_t seed = 0; seed < runs; ++seed) {
+        const Signal signal = swinging(seed);
+        const Count count = counted(signal, transmitted(signal));
+        INFO("swing " << seed << ": " << count);
+        CHECK(count.wrong + count.invented == 0);
+        CHECK(count.blind_s <= 10.0);
+        all.add(count);
+    }
+    return all;
+}
+
+TEST_CASE("a carrier that steps and swings as under a parachute leaves no tone wrong and the receiver never blind for "
+          "ten seconds",
+          "[tones][R56]") {
+    const Count all = check_swings(6);
+    INFO(all);
+    CHECK(all.right >= 0.9 * all.sent);
+}
+
+TEST_CASE("of two hundred landings that step and swing none has a wrong tone, nor ten seconds without a carrier",
+          "[.long][long][tones][R56]") {
+    const Count all = check_swings(200);
+    INFO(all);
+    CHECK(all.right >= 0.9 * all.sent);
+}
+
 TEST_CASE("forty hours of noise of all kinds hold at most one invented tone an hour", "[.long][tones][R56]") {
     Count all;
     const auto kinds = cases();
