@@ -177,7 +177,7 @@ TEST_CASE("an algorithm is named as not run, and the packets are read", "[teleme
     CHECK(found.findings[0] == "m.xml: MathAlgorithm 'Power' is not run");
 }
 
-// Constructs that were met in public databases, written anew: docs/missions.md names them.
+// Constructs that were met in public databases, written anew: docs/missions.md names those that can be named.
 
 TEST_CASE("an array may be empty: its last index is then −1", "[telemetry][xtce][R54]") {
     const std::string list =
