@@ -172,29 +172,43 @@ bool is_within(const std::string& name, const std::set<std::string>& names) {
     return false;
 }
 
-/// Qualifies names that several containers, or several parameters of packets, have: the first keeps its own, others are
-/// called by their path.
+// Chosen, so that a hostile file cannot exhaust stack or time: packets are decoded no deeper either.
+constexpr unsigned container_depth_max = 64;
+constexpr std::size_t containers_max = 256;
+
+/// Adds the parameters of a container, of those that it derives from and of those within it.
+void add_parameters(const PacketModel& model, std::size_t container, unsigned depth, std::set<std::size_t>& seen,
+                    std::set<std::size_t>& parameters) {
+    if (depth == container_depth_max || seen.size() == containers_max || !seen.insert(container).second) return;
+    const PacketContainer& of = model.containers[container];
+    if (of.base) add_parameters(model, *of.base, depth + 1, seen, parameters);
+    for (const PacketEntry& entry : of.entries) {
+        if (entry.what == PacketEntry::What::parameter) parameters.insert(entry.index);
+        if (entry.what == PacketEntry::What::container) add_parameters(model, entry.index, depth + 1, seen, parameters);
+    }
+}
+
+/// Qualifies names that several containers, or several parameters of a packet, have: the first of the file keeps its
+/// own, others are called by their path. A name that comes in different packets is left: there it is clear.
 void make_names_unique(PacketModel& model) {
-    std::set<std::string> containers;
+    std::set<std::string> containers, composite;
     for (PacketContainer& container : model.containers)
         if (!containers.insert(container.name).second) container.name = container.path.substr(1);
-    std::vector<bool> in_packet(model.parameters.size());
-    for (const PacketContainer& container : model.containers)
-        for (const PacketEntry& entry : container.entries)
-            if (entry.what == PacketEntry::What::parameter) in_packet[entry.index] = true;
-    std::set<std::string> composite, taken;
     for (const PacketParameter& parameter : model.parameters) {
         const auto kind = model.types[parameter.type].kind;
         if (kind == PacketType::Kind::aggregate || kind == PacketType::Kind::array) composite.insert(parameter.name);
     }
-    for (const bool of_packets : {true, false})  // what no packet has takes no name from what one has
-        for (std::size_t i = 0; i < model.parameters.size(); ++i) {
-            PacketParameter& parameter = model.parameters[i];
-            if (in_packet[i] != of_packets) continue;
-            if (!is_within(parameter.name, composite) && taken.insert(parameter.name).second) continue;
-            parameter.name = parameter.path.substr(1);
-            if (!taken.insert(parameter.name).second) parameter.name = parameter.path;
+    std::set<std::size_t> by_path;
+    for (std::size_t i = 0; i < model.containers.size(); ++i) {
+        std::set<std::size_t> seen, parameters;
+        add_parameters(model, i, 0, seen, parameters);
+        std::set<std::string> taken;
+        for (const std::size_t each : parameters) {
+            const std::string& name = model.parameters[each].name;
+            if (is_within(name, composite) || !taken.insert(name).second) by_path.insert(each);
         }
+    }
+    for (const std::size_t each : by_path) model.parameters[each].name = model.parameters[each].path.substr(1);
 }
 
 /// @param findings  of each document

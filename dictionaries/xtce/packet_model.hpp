@@ -147,7 +147,7 @@ struct PacketType {
 };
 
 struct PacketParameter {
-    std::string name;      ///< unique in another mission's files: one that an earlier parameter has is its path
+    std::string name;      ///< unique in a packet of another mission: its path where an earlier one has the name
     std::string path;      ///< "/MSL/Events/opcode": unique
     std::size_t type = 0;  ///< in PacketModel::types
     Condition valid{};     ///< where it is false, the value is undefined

@@ -300,7 +300,7 @@ TEST_CASE("what a root says of itself and its name spaces is no finding", "[tele
     CHECK(read({{"m.xml", text}}, "05").findings.empty());
 }
 
-TEST_CASE("names that several parameters have are unique, and the same as values, channels and times",
+TEST_CASE("names that several parameters of a packet have are unique, and the same as values, channels and times",
           "[telemetry][xtce][R54]") {
     const auto within = [](const std::string& name) {
         return "<SpaceSystem name='" + name + "'><TelemetryMetaData><ParameterSet>" + parameter("TEMP", "/S/u8") +
