@@ -255,7 +255,12 @@ std::string RehearsalManager::refusal_of(const SendCommands& order) const {
 bool RehearsalManager::waits(const SendCommands& order) const {
     const bool hold = std::ranges::all_of(order.requests,
                                           [](const v1::CommandRequest& request) { return request.action() == "hold"; });
-    return change_pending_ && !order.only_check && !hold;
+    if (!change_pending_of_ || order.only_check || hold) return false;
+    const auto asker = order.asker();
+    const bool behind_own = *change_pending_of_ == asker || std::ranges::any_of(waiting_, [&](const Waiting& each) {
+        return each.order.asker() == asker;
+    });
+    return behind_own || std::ranges::any_of(order.requests, changes_timeline);
 }
 
 void RehearsalManager::wait(SendCommands order, const AuthorityCheck& authority) {
@@ -273,11 +278,11 @@ void RehearsalManager::wait(SendCommands order, const AuthorityCheck& authority)
 void RehearsalManager::analyse(SendCommands order) {
     const auto sent = runner_->unknown(order.requests);
     if (!order.only_check && std::ranges::any_of(sent, changes_timeline)) {
-        change_pending_ = true;
+        change_pending_of_ = order.asker();
         order.replies = [this, replies = std::move(order.replies)](std::vector<v1::CommandReply> answers) {
-            change_pending_ = false;
+            const auto decided = std::exchange(change_pending_of_, std::nullopt).value_or("");
             replies(std::move(answers));
-            change_decided();
+            change_decided(decided);
         };
     }
     const auto run = state_.run();
@@ -305,7 +310,9 @@ void RehearsalManager::hand_over(SendCommands order, std::uint64_t run, std::uin
     static_cast<void>(runner_->order(std::move(order)));  // a refusal is in the replies
 }
 
-void RehearsalManager::change_decided() {
+void RehearsalManager::change_decided(const std::string& asker) {
+    // The others' turn: changes of one asker, however many, delay another's by one analysis.
+    std::ranges::stable_partition(waiting_, [&](const Waiting& each) { return each.order.asker() != asker; });
     for (auto& [order, authority] : std::exchange(waiting_, {})) {
         Result<void> allowed;
         for (const auto& request : order.requests)

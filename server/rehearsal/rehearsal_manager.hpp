@@ -25,7 +25,8 @@ namespace aeolis::server {
 /// Commands  received ─────────────────► analysing ──► with the runner ──► answered
 ///               │  ▲                        └──── refused ──────────────────►┘
 ///               ▼  │ decided, and still allowed
-///            waiting, while an earlier order that changes the timeline is analysing or with the runner; never a hold,
+///            waiting, while an earlier order that changes the timeline is analysing or with the runner: orders that
+///            change it too, in turns by asker, and all that its asker sends after it (decision 0065); never a hold,
 ///            which lets nothing leave, nor a dry run
 /// Analysis  settled ──timeline moved, run begun──► analysing ──known──► settled
 ///           analysing ──moved again──► outdated ──answer──► analysing
@@ -129,7 +130,7 @@ class RehearsalManager {
     void analyse(SendCommands order);
     void hand_over(SendCommands order, std::uint64_t run, std::uint64_t undone_count,
                    const Result<std::string>& timeline);
-    void change_decided();
+    void change_decided(const std::string& asker);
 
     /// A command that changes the timeline was analysed together with those before it. When one of those has no effect,
     /// the command is released only once its history shows the new analysis, or never.
@@ -147,8 +148,9 @@ class RehearsalManager {
     Callbacks callbacks_;
     v1::RunState state_;
     std::string closed_;
-    Phase phase_ = Phase::none;    ///< except `over`; under_way: the run is in the archive, and state_ is its state
-    bool change_pending_ = false;  ///< an order that changes the timeline is analysing or with the runner
+    Phase phase_ = Phase::none;  ///< except `over`; under_way: the run is in the archive, and state_ is its state
+    /// The asker of an order that changes the timeline and is analysing or with the runner.
+    std::optional<std::string> change_pending_of_;
     std::deque<Waiting> waiting_;
     AnalysisState analysis_state_ = AnalysisState::settled;
     std::uint64_t timeline_undone_count_ = 0;  ///< changes of the timeline that had no effect
