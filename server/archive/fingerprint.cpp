@@ -257,13 +257,16 @@ Result<FingerprintCheck> check_fingerprints(sqlite::Database& database, std::opt
             check.faults.push_back(of_run + "items after " + std::to_string(prints.back().last) +
                                    " have no fingerprint in the audit");
     }
-    for (const auto& [number, run] : *stored)
-        if (wanted(number) && !kept->prints.contains(number))
-            check.notes.push_back("audit: run " + std::to_string(number) + " has no fingerprint (" +
-                                  (run.state == "running"       ? "it goes on"
-                                   : run.state == "interrupted" ? "it was cut off"
-                                                                : "it ended before they were kept") +
+    for (const auto& [number, run] : *stored) {
+        if (!wanted(number) || kept->prints.contains(number)) continue;
+        const auto of_run = "run " + std::to_string(number);
+        if (run.state == "finished")  // its end and its fingerprint are one transaction
+            check.faults.push_back(of_run + ": it has ended, and its fingerprint is not in the audit");
+        else
+            check.notes.push_back("audit: " + of_run + " has no fingerprint (" +
+                                  (run.state == "running" ? "it goes on" : "it was cut off") +
                                   "): its commands, notes, tones and outcome are not compared");
+    }
     return check;
 }
 
