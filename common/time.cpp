@@ -74,6 +74,18 @@ std::optional<std::int64_t> take_fraction(std::string_view& rest) {
     return microseconds;
 }
 
+/// "Z", "+02:00" or nothing: the seconds by which the text is ahead of UTC.
+std::optional<int> take_offset(std::string_view& rest) {
+    if (rest.empty() || take(rest, "Z")) return 0;
+    const bool behind = take(rest, "-");
+    int hours = 0, minutes = 0;
+    if ((!behind && !take(rest, "+")) || !take_number(rest, 2, hours) || !take(rest, ":") ||
+        !take_number(rest, 2, minutes) || hours > 23 || minutes > 59)
+        return std::nullopt;
+    const int seconds = (hours * 60 + minutes) * 60;
+    return behind ? -seconds : seconds;
+}
+
 }  // namespace
 
 std::optional<Scet> scet_from_text(std::string_view text) {
@@ -84,9 +96,12 @@ std::optional<Scet> scet_from_text(std::string_view text) {
         !take(text, ":") || !take_number(text, 2, second) || hour > 23 || minute > 59 || second > 59)
         return std::nullopt;
     const auto fraction = take_fraction(text);
-    if (!fraction || (!text.empty() && text != "Z")) return std::nullopt;
+    if (!fraction) return std::nullopt;
+    const auto ahead_s = take_offset(text);
+    if (!ahead_s || !text.empty()) return std::nullopt;
     const auto since = *date - (sys_days{year{2000} / January / 1} + hours{12});
-    return Scet{microseconds{since}.count() + ((hour * 60LL + minute) * 60 + second) * 1'000'000 + *fraction};
+    return Scet{microseconds{since}.count() + ((hour * 60LL + minute) * 60 + second - *ahead_s) * 1'000'000 +
+                *fraction};
 }
 
 std::optional<Ert> ert_from_text(std::string_view text) {

@@ -44,8 +44,8 @@ struct Ert {
 /// Day-of-year text with milliseconds: 2012-219T05:10:47.400.
 std::string day_of_year_text(Scet time);
 std::string day_of_year_text(Ert time);
-/// Reads that form, or the calendar's: 2012-08-06T05:10:47.4. The fraction of a second, of six digits at most, and a Z
-/// at the end are optional. None for any other text, or for a day that does not exist.
+/// Reads that form, or the calendar's: 2012-08-06T05:10:47.4. Optional: a fraction of a second, six digits at most, and
+/// a Z or an offset, +02:00, at the end. None for any other text, a leap second, or a day that does not exist.
 std::optional<Scet> scet_from_text(std::string_view text);
 std::optional<Ert> ert_from_text(std::string_view text);
 /// Reads seconds from entry: E+4:58, E-1:02:03.5, E+298.5, with a hyphen or a minus sign. None for any other text.

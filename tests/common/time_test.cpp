@@ -95,13 +95,39 @@ TEST_CASE("UTC is read by day of year and by calendar, to the microsecond, and n
                              "2012-13-01T00:00:00",
                              "2012-08-06 05:10:47",
                              "2012-08-06T05:10:47z",
-                             "2012-08-06T05:10:47+00:00",
+                             "2012-08-06T05:10:47+00:00Z",
+                             "2012-08-06T05:10:47Z+00:00",
+                             "2012-08-06T05:10:47+0000",
+                             "2012-08-06T05:10:47+2:00",
+                             "2012-08-06T05:10:47+24:00",
+                             "2012-08-06T05:10:47+01:60",
+                             "2012-08-06T05:10:47 02:00",
+                             "2012-08-06T05:10:47+02:00:00",
+                             "2012-06-30T23:59:60+00:00",
+                             "2012-08-06T05:10+00:00",
                              "2012-08-06T05:10:47ZZ",
                              "-012-08-06T05:10:47",
                              "2012-8-6T05:10:47"}) {
         INFO(text);
         CHECK_FALSE(ert_from_text(text).has_value());
     }
+}
+
+TEST_CASE("a time with an offset from UTC is read as that instant, by calendar and by day of year", "[common][R62]") {
+    const auto utc = scet_from_text("2012-08-06T05:10:47.4Z");
+    REQUIRE(utc.has_value());
+    for (const char* text :
+         {"2012-08-06T05:10:47.4+00:00", "2012-08-06T05:10:47.400000-00:00", "2012-08-06T07:10:47.4+02:00",
+          "2012-219T10:40:47.4+05:30", "2012-08-05T22:10:47.4-07:00", "2012-08-07T05:09:47.4+23:59"}) {
+        INFO(text);
+        CHECK(scet_from_text(text) == utc);
+    }
+    // What Python's datetime.isoformat() writes when there is no fraction; and over the end of a year.
+    CHECK(ert_from_text("2012-01-01T00:30:00+01:00") == ert_from_text("2011-365T23:30:00"));
+    // The leap second of 2012-06-30 is not counted: the instants on both sides of it are one second apart.
+    CHECK(scet_from_text("2012-07-01T02:00:00+02:00")->microseconds -
+              scet_from_text("2012-06-30T23:59:59+00:00")->microseconds ==
+          1'000'000);
 }
 
 TEST_CASE("a time from entry is read with hours, minutes and seconds or seconds alone, before and after", "[common]") {
