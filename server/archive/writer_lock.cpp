@@ -38,7 +38,7 @@ Result<WriterLock> WriterLock::take(const std::filesystem::path& archive) {
     auto file = archive;
     file += "-writer";
     for (;;) {
-        int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
+        int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
         if (descriptor < 0 && errno == EACCES)
             descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);  // another user's: enough for a lock
         if (descriptor < 0)

@@ -135,6 +135,8 @@ TEST_CASE("an archive has one writer", "[archive]") {
     const auto second = Archive::open(file);
     REQUIRE_FALSE(second.ok());
     CHECK(second.error().message == file.string() + " is being written by another process");
+    CHECK((std::filesystem::status(file.string() + "-writer").permissions() & std::filesystem::perms::all) ==
+          (std::filesystem::perms::owner_read | std::filesystem::perms::owner_write));
     first = Error{"closed"};
     CHECK(Archive::open(file).ok());
 }
