@@ -7,7 +7,8 @@
 
 namespace aeolis::server {
 
-Result<commands::Request> request_of(const v1::CommandRequest& message, const std::string& browser, bool director) {
+Result<commands::Request> request_of(const v1::CommandRequest& message, const archive::RunClocks& clocks,
+                                     const std::string& browser, bool director) {
     commands::Request request;
     request.request = message.request();
     request.client_id = message.client_id();
@@ -19,9 +20,9 @@ Result<commands::Request> request_of(const v1::CommandRequest& message, const st
     request.service = message.service();
     request.dry_run = message.dry_run();
     if (const auto& at = message.release_at(); !at.empty()) {
-        request.release_at = ert_from_text(at);
-        if (!request.release_at)
-            return Error{fmt::format("release_at: '{}' is not a time like 2012-219T05:10:47.400", at)};
+        const auto leaves = archive::departure_of(at, clocks, "release_at");
+        if (!leaves) return leaves.error();
+        request.release_at = *leaves;
     }
     request.hold = message.hold();
     request.priority = message.priority();

@@ -6,16 +6,18 @@
 #include "commands/request.hpp"
 #include "common/result.hpp"
 #include "server/archive/records.hpp"
+#include "server/archive/run_instant.hpp"
 
 #include <string>
 
 // Converts the command path's inputs and outputs to and from stream messages and archive rows.
 namespace aeolis::server {
 
-/// Reads a request. The Error names a field that cannot be read. `browser`: without accounts, the browser that sends
-/// it, by which a second person is told apart. `director`: whether its sender may send hazardous commands.
-Result<commands::Request> request_of(const v1::CommandRequest& message, const std::string& browser = {},
-                                     bool director = false);
+/// Reads a request. The Error names a field that cannot be read. `clocks`: of its run, for release_at. `browser`:
+/// without accounts, the browser that sends it, by which a second person is told apart. `director`: whether its sender
+/// may send hazardous commands.
+Result<commands::Request> request_of(const v1::CommandRequest& message, const archive::RunClocks& clocks,
+                                     const std::string& browser = {}, bool director = false);
 v1::CommandReply message_of(const commands::Reply& reply);
 commands::TimelineVerdict verdict_of(const v1::TimelineVerdict& message);
 v1::TimelineVerdict message_of(const commands::TimelineVerdict& verdict);

@@ -94,7 +94,8 @@ v1::CommandReply Rehearsal::submit(const v1::CommandRequest& request, const std:
 
 Result<commands::Request> Rehearsal::readable(const v1::CommandRequest& request, const std::string& browser,
                                               bool director) const {
-    if (takes_commands()) return request_of(request, browser, director);
+    const archive::RunClocks clocks{landing().correlation(), scenario_.entry_sclk, landing().light_time_s()};
+    if (takes_commands()) return request_of(request, clocks, browser, director);
     return Error{fmt::format("the test venue {} has no computer", name_of(scenario_.test_venue))};
 }
 

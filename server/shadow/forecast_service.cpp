@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/shadow/forecast_service.hpp"
 
+#include "server/archive/items.hpp"
 #include "server/base/json.hpp"
 #include "server/base/wall_clock.hpp"
 #include "server/campaign/campaign_order.hpp"
@@ -28,13 +29,15 @@ bool is(const archive::ForecastRecord& record, archive::RunId run, std::uint64_t
     return record.run == run && record.number == number;
 }
 
-Result<Assumption> assumption_of(const v1::ForecastRequest& request, const simulation::Scenario& scenario) {
+Result<Assumption> assumption_of(const v1::ForecastRequest& request, const v1::RunState& run,
+                                 const simulation::Scenario& scenario) {
     Assumption assumption;
+    const archive::RunClocks clocks{archive::correlation_of(run), Sclk{run.entry_sclk()}, run.light_time_s()};
     for (int i = 0; i < request.commands_size(); ++i) {
         auto message = request.commands(i);
         message.set_armed(true);  // who assumes a command has armed and confirmed it
         message.set_confirmation(message.command());
-        auto command = request_of(message, {}, true);
+        auto command = request_of(message, clocks, {}, true);
         if (!command) return Error{fmt::format("commands[{}]: {}", i, command.error().message)};
         assumption.commands.push_back(std::move(*command));
     }
@@ -120,7 +123,7 @@ Result<ReadForecast> read_forecast(const v1::ForecastRequest& request, const v1:
                                  state.clocks().e_s())};
     forecast.goes_on = state.has_clocks();
     forecast.now = request.at().empty();
-    auto assumption = assumption_of(request, *scenario);
+    auto assumption = assumption_of(request, state, *scenario);
     if (!assumption) return assumption.error();
     forecast.cycle = at->cycle;
     forecast.assumption = std::move(*assumption);

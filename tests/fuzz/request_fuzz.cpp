@@ -40,7 +40,7 @@ void command(std::string_view json) {
     v1::CommandRequest request;
     if (const auto parsed = from_json(json, request); !parsed) return must(!parsed.error().message.empty());
     if (requests++ % requests_a_landing == 0) landing.emplace(library().scenario("nominal").value(), 1, 0, mission());
-    const auto asked = request_of(request);
+    const auto asked = request_of(request, {});
     if (!asked) return must(!asked.error().message.empty());
     const auto reply = message_of(landing->submit(*asked));
     must(reply.request() == request.request() && reply.accepted() == reply.reason().empty());

@@ -13,6 +13,7 @@ import threading
 import time
 import unittest
 import urllib.request
+from datetime import datetime, timedelta, timezone
 from pathlib import Path
 from typing import Any
 
@@ -127,6 +128,20 @@ class Landed(unittest.TestCase):
         with Client(self.server.address) as aeolis:
             by_tens = [item.seq for item in aeolis.events(run=self.landed, limit=10)]
             self.assertEqual(by_tens, [item.seq for item in aeolis.events(run=self.landed)])
+
+    def test_times_of_python_are_instants_whatever_their_zone(self) -> None:
+        with Client(self.server.address) as aeolis:
+            state = aeolis.run(self.landed)
+            entry_us = state.clock.scet_us + round((state.entry_sclk - state.clock.sclk) * state.clock.rate * 1e6)
+            entry = datetime(2000, 1, 1, 12, tzinfo=timezone.utc) + timedelta(microseconds=entry_us)
+            (by_name,) = aeolis.history(["altitude_m"], run=self.landed, start="E+0:10", end="E+0:20")
+            for zone in (timezone.utc, timezone(timedelta(hours=-7)), timezone(timedelta(hours=5, minutes=30))):
+                start = (entry + timedelta(seconds=10)).astimezone(zone)
+                (by_time,) = aeolis.history(
+                    ["altitude_m"], run=self.landed, start=start, end=start + timedelta(seconds=10)
+                )
+                self.assertEqual(list(by_time.sclk), list(by_name.sclk))
+            self.assertGreater(len(by_name.sclk), 0)
 
     def test_errors_are_the_server_s_own_sentences(self) -> None:
         with Client(self.server.address) as aeolis:
@@ -265,6 +280,13 @@ class InProgress(unittest.TestCase):
                 self.assertRegex(history.client_id, "^[0-9a-f]{32}$")
                 again = await aeolis.command("NO_OP", run=run, client_id=history.client_id)
                 self.assertEqual(again.command, history.command)
+                state = await aeolis.run(run)
+                leaves_us = state.clocks.ert_us + 600_000_000
+                at = datetime(2000, 1, 1, 12) + timedelta(microseconds=leaves_us)
+                arrives = at + timedelta(seconds=state.light_time_s)
+                for release_at in (at, at.isoformat() + "+00:00", "ert:" + at.isoformat(), "scet:" + arrives.isoformat()):
+                    reply = await aeolis.command("NO_OP", run=run, dry_run=True, release_at=release_at)
+                    self.assertAlmostEqual(reply.leaves_us, leaves_us, delta=2)
 
         asyncio.run(command())
 

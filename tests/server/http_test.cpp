@@ -253,7 +253,9 @@ TEST_CASE("an event is found by its SCET, its ERT or its time from entry, and a 
     const auto from_entry = fmt::format("E{:+.6f}", first.event().sclk() - run.entry_sclk());
     const auto sent = Scet{archive::correlation_of(run).scet_of(Sclk{first.event().sclk()}).microseconds +
                            static_cast<std::int64_t>(run.light_time_s() * 1e6)};
-    for (const auto& instant : {scet + "Z", "ert:" + day_of_year_text(sent), from_entry}) {
+    for (const auto& instant :
+         {scet + "Z", scet + "%2B00:00", scet + " 00:00", "scet:" + scet, "ert:" + day_of_year_text(sent),
+          "ert:" + day_of_year_text(sent) + "-00:00", from_entry}) {
         INFO(instant);
         REQUIRE(from_json(ask("/events?from=" + instant + "&to=" + instant).body, found).ok());
         REQUIRE(found.events_size() > 0);

@@ -6,6 +6,7 @@ import asyncio
 import ssl
 import uuid
 from collections.abc import AsyncIterator, Sequence
+from datetime import datetime
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Optional, Union
@@ -19,8 +20,9 @@ from .errors import AeolisError, CommandFailed, CommandRefused
 from .frames import frame_of
 from .schema import Schema, word
 
-Instant = Union[float, str]
-"""SCLK in seconds, or a text: SCET ("2012-219T05:10:47"), "ert:" and a UTC time, or from entry ("E+4:58")."""
+Instant = Union[float, str, datetime]
+"""SCLK in seconds, SCET as a datetime (a naive one is UTC), or a text: SCET ("2012-219T05:10:47"), "ert:" and a UTC
+time, or from entry ("E+4:58")."""
 Run = Union[int, str]
 """The number of a run, or "latest"."""
 
@@ -221,13 +223,17 @@ class AsyncClient:
         @param confirm    arms a hazardous command and types its name: only what a person decided
         @param stage      one of STAGES, of which word must have come
         @param client_id  an id of one's own, by which the command can be sent again later, also by another program
-        @param more       fields of CommandRequest: from_solution, dry_run, release_at, hold, priority, controller
+        @param more       fields of CommandRequest: from_solution, dry_run, release_at, hold, priority, controller.
+                          release_at is when it leaves the station (UTC, as text or datetime), or when it arrives at the
+                          vehicle: "E-10:00", SCLK in seconds, or "scet:2012-219T05:00:00"
         Errors: CommandRefused; CommandFailed, when that stage or one before failed; asyncio.TimeoutError; AeolisError
             when no reply came in six tries: whether the command was taken is not known then
         """
         if run == "latest":
             run = (await self.run()).run  # another run may begin meanwhile: this is for the present one
         body: dict[str, Any] = {"command": name, "client_id": client_id or uuid.uuid4().hex, **more}
+        if "release_at" in body:
+            body["release_at"] = str(_written(body["release_at"]))
         body["arguments"] = [{"name": key, "value": value} for key, value in (arguments or {}).items()]
         if confirm:
             body.update(armed=True, confirmation=name)
@@ -386,7 +392,11 @@ def _is_over(state: Any) -> bool:
 
 
 def _given(query: dict[str, Any]) -> dict[str, Any]:
-    return {name: value for name, value in query.items() if value is not None}
+    return {name: _written(value) for name, value in query.items() if value is not None}
+
+
+def _written(value: Any) -> Any:
+    return value.isoformat() if isinstance(value, datetime) else value
 
 
 def _known(ids: dict[str, int], name: str) -> int:
