@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <iterator>
 #include <spdlog/pattern_formatter.h>
+#include <spdlog/spdlog.h>
 
 namespace aeolis::server {
 namespace {
@@ -78,6 +79,14 @@ void print_line(std::FILE* to, std::string_view text) {
     spdlog::memory_buf_t line;
     JsonLine{}.format(spdlog::details::log_msg{"", level, {text.data(), text.size()}}, line);
     std::fwrite(line.data(), 1, line.size(), to);
+}
+
+void log_always(std::string_view text) {
+    const auto log = spdlog::default_logger();
+    if (log->level() == spdlog::level::off) return;
+    spdlog::logger unfiltered{log->name(), log->sinks().begin(), log->sinks().end()};  // the sinks filter nothing
+    unfiltered.flush_on(log->flush_level());
+    unfiltered.info("{}", text);
 }
 
 std::unique_ptr<spdlog::formatter> text_lines() {

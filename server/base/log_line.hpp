@@ -17,6 +17,9 @@ std::string printable(std::string_view text);
 void print_line(std::FILE* to, std::string_view text);
 void print_json();
 
+/// Logs a line of the level info whatever the log's level is, unless that is off: for what must not be missing.
+void log_always(std::string_view text);
+
 /// spdlog's own format, with a printable message.
 std::unique_ptr<spdlog::formatter> text_lines();
 /// One JSON object a line.

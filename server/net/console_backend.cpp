@@ -4,6 +4,7 @@
 #include "server/access/this_user.hpp"
 #include "server/archive/upkeep.hpp"
 #include "server/base/json.hpp"
+#include "server/base/log_line.hpp"
 #include "server/base/wall_clock.hpp"
 #include "server/rehearsal/again_of.hpp"
 #include "server/shadow/shadow.hpp"
@@ -157,6 +158,7 @@ WebServer::Handlers ConsoleBackend::web_handlers() {
     handlers.request = [this](HttpRequest request, const Respond& respond) {
         api_->handle(std::move(request), respond);
     };
+    handlers.refused = [this](const char* route, unsigned status) { api_->count(route, status); };
     handlers.person = [this](const Credentials& credentials) -> std::optional<std::string> {
         const auto who = access_->identify(credentials);
         if (!who.role) return std::nullopt;
@@ -371,7 +373,7 @@ void ConsoleBackend::check_audit_head() {
 
 /// On the pipeline's thread.
 void ConsoleBackend::keep_audit_head(const archive::AuditHead& head) const {
-    spdlog::info("audit head {}", archive::text_of(head));
+    log_always(fmt::format("audit head {}", archive::text_of(head)));
     if (settings_.accounts.empty()) return;
     if (const auto kept = archive::write_head(audit_head_file(settings_), head); !kept)
         spdlog::error("the head of the audit is not kept: {}", kept.error().message);
@@ -402,7 +404,7 @@ void ConsoleBackend::watch_clock() {
     note.text = fmt::format("{}. Earth received times of this run do not follow it.", told);
     note.by = "server";
     note.written = wall_clock_text();
-    const auto added = [run](const Result<archive::Annotation>& stored) {
+    const auto added = [run](const Result<PipelineThread::Annotated>& stored) {
         if (!stored) spdlog::error("run {}: the jump is not in its shift log: {}", run.value, stored.error().message);
     };
     if (!pipeline_->annotate(run, std::move(note), added)) added(Error{"too much waits to be stored"});

@@ -3,7 +3,12 @@
 
 #include "tests/support/catch.hpp"
 
+#include <memory>
 #include <spdlog/details/log_msg.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
+#include <sstream>
+#include <string>
 
 namespace server_log_line_test {
 
@@ -23,6 +28,28 @@ TEST_CASE("what a client sends makes no line of its own in the log, and says not
         CHECK((text.find("X\\nY") != text.npos || text.find("X\\u000aY") != text.npos));
         CHECK(text.find("warning") != std::string_view::npos);
     }
+}
+
+TEST_CASE("what must not be missing is logged at any level, as info, unless there is no log", "[operation][audit]") {
+    std::ostringstream text;
+    const auto before = spdlog::default_logger();
+    const auto logger =
+        std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(text));
+    logger->set_formatter(json_lines());
+    spdlog::set_default_logger(logger);
+    for (const auto level : {spdlog::level::info, spdlog::level::warn, spdlog::level::critical, spdlog::level::off}) {
+        logger->set_level(level);
+        log_always("audit head 7:ab");
+        spdlog::info("a command");
+    }
+    spdlog::set_default_logger(before);
+    const auto lines = [&](const std::string& words) {
+        int count = 0;
+        for (auto at = text.str().find(words); at != std::string::npos; at = text.str().find(words, at + 1)) ++count;
+        return count;
+    };
+    CHECK(lines(R"("level":"info","message":"audit head 7:ab"})") == 3);
+    CHECK(lines("a command") == 1);
 }
 
 }  // namespace server_log_line_test
