@@ -69,9 +69,9 @@ void write(MetricsText& text, const PipelineThread::Figures& pipeline) {
     text.gauge("archive_bytes", "size of the archive's file", pipeline.archive_octets);
     text.gauge("archive_wal_bytes", "size of the archive's write-ahead log", pipeline.log_octets);
     text.counter("items_published_total", "items made durable and published", pipeline.published_items);
-    text.begin("link_units_total", "counter", "packets, or decoded tones, received over a link");
+    text.begin("link_packets_total", "counter", "packets received over a link; of the link tones, decoded tones");
     for (const auto& [link, received] : pipeline.links)
-        text.line("link_units_total", fmt::format("{{link=\"{}\"}}", link), received.items);
+        text.line("link_packets_total", fmt::format("{{link=\"{}\"}}", link), received.items);
     text.begin("link_octets_total", "counter", "octets of packets received over a link");
     for (const auto& [link, received] : pipeline.links)
         text.line("link_octets_total", fmt::format("{{link=\"{}\"}}", link), received.octets);
@@ -187,7 +187,8 @@ void Api::metrics(const ApiRequest& call) {
                  parts_.clock_watch.jumps());
     text.gauge("clock_moved_seconds", "all these jumps together", parts_.clock_watch.moved_s());
     write(text, parts_.hub);
-    text.begin("http_responses_total", "counter", "responses, by route and status; none: no route of the API");
+    text.begin("http_responses_total", "counter",
+               "responses, by route and status; none: no route of the API, or no HTTP");
     {
         const std::scoped_lock lock{counts_mutex_};
         for (const auto& [of, number] : responses_)

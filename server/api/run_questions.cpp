@@ -98,7 +98,9 @@ HttpResponse items(const AnswerContext& context, archive::Reader& reader, archiv
     if (!page) return error_response(400, page.error());
     archive::Reader::ItemKinds kinds;
     if (selection.all_channels) kinds.octets_max = archive::page_octets_max;
-    auto read = reader.items(run, page->after, page->limit, kinds);
+    const bool newest_first = page->order == archive::Order::newest_first;
+    auto read = newest_first ? reader.newest_items(run, page->after, page->limit, kinds)
+                             : reader.items(run, page->after, page->limit, kinds);
     if (!read) return error_response(400, read.error());
     std::vector<ItemWithFacts> given;
     for (const auto& item : read->items) given.push_back({.item = &item, .facts = {}});
@@ -107,11 +109,18 @@ HttpResponse items(const AnswerContext& context, archive::Reader& reader, archiv
     read->items = {};  // before the text is made
     batch.set_run(run.value);
     batch.set_history(true);
-    batch.set_after_seq(page->after);
+    batch.set_after_seq(newest_first ? read->after : page->after);
     batch.set_complete_through(read->complete_through);
-    if (format_of(query, item_formats) == "json")
-        return {200, "application/json", "no-store", to_json_by_rows(std::move(batch), "items")};
-    return {200, "application/x-protobuf", "no-store", batch.SerializeAsString()};
+    const auto next = !read->more ? 0 : newest_first ? read->after + 1 : read->complete_through;
+    HttpResponse response;
+    response.fields.emplace_back("Aeolis-Next-After", std::to_string(next));
+    if (format_of(query, item_formats) == "json") {
+        response.body = to_json_by_rows(std::move(batch), "items");
+    } else {
+        response.content_type = "application/x-protobuf";
+        response.body = batch.SerializeAsString();
+    }
+    return response;
 }
 
 HttpResponse run_itself(const AnswerContext&, archive::Reader& reader, archive::RunId run, const QueryText&) {
@@ -584,7 +593,7 @@ const std::array questions{
              list_formats,
              packets},
     RunRoute{"tones", {"text", "from", "to", "after", "limit", "order", "format"}, list_formats, tones},
-    RunRoute{"items", {"names", "after", "limit", "format"}, item_formats, items},
+    RunRoute{"items", {"names", "after", "limit", "order", "format"}, item_formats, items},
     RunRoute{"events",
              {"level", "text", "from", "to", "after", "limit", "order", "duplicates", "format"},
              list_formats,

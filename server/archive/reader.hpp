@@ -48,6 +48,7 @@ struct ItemPage {
     std::vector<v1::Item> items;    ///< in order of seq
     Sequence complete_through = 0;  ///< every item up to here is in `items`, or not after `after`
     bool more = false;
+    Sequence after = 0;  ///< newest first: every item after this up to complete_through is in `items`
 };
 
 struct SeriesQuery {
@@ -227,6 +228,8 @@ class Reader {
     /// The items after `after`, in order, of all kinds, as they were published.
     Result<ItemPage> items(RunId run, Sequence after, std::size_t limit);
     Result<ItemPage> items(RunId run, Sequence after, std::size_t limit, ItemKinds kinds);
+    /// The newest items before `before`, or of all when that is 0, the newest first.
+    Result<ItemPage> newest_items(RunId run, Sequence before, std::size_t limit, ItemKinds kinds);
     Result<Sequence> last_seq(RunId run);
     /// What is needed to fly a run again, in whatever state it is.
     Result<FlownRun> flown(RunId run);

@@ -85,7 +85,7 @@ Result<void> collect_alarms(Reader::State& reader, const RunInfo& info, Page& pa
 
 /// Collects packets and their samples. A row gives one item or, if sampled, two; the page may begin between them.
 Result<void> collect_packets(Reader::State& reader, const RunInfo& info, Page& page, Reader::ItemKinds kinds) {
-    auto rows = reader.query(rows_sql<PacketRecord>());
+    auto rows = reader.query(rows_sql<PacketRecord>(page.order));
     if (!rows) return rows.error();
     (*rows)
         ->bind(1, item_key(page.run, page.after))
@@ -94,7 +94,7 @@ Result<void> collect_packets(Reader::State& reader, const RunInfo& info, Page& p
     const auto* words = reader.words_of(info);
     std::vector<double> values;
     std::size_t count = 0, octets = 0;
-    Sequence last = page.after;
+    Sequence last = page.newest_first() ? page.through : page.after;  // the last item that is complete
     const auto add = [&](v1::Item item) {
         if (kinds.octets_max != SIZE_MAX) octets += item.ByteSizeLong();
         page.items.push_back(std::move(item));
@@ -104,9 +104,9 @@ Result<void> collect_packets(Reader::State& reader, const RunInfo& info, Page& p
         if (!found) return found.error();
         if (!*found) break;
         const auto record = read_row<PacketRecord>(**rows);
-        last = record.sampled ? record.seq + 1 : record.seq;
+        last = record.sampled && !page.newest_first() ? record.seq + 1 : record.seq;
         if (kinds.packets && record.seq > page.after) add(to_item(record, words));
-        if (!kinds.samples || !record.sampled) continue;
+        if (!kinds.samples || !record.sampled || record.seq == page.through) continue;
         // With another dictionary the values are unknown; the item still keeps its number.
         SampleRecord sample{{record.seq + 1, record.ert}, record.packet.value_or(0), record.sclk, record.source, {}};
         values.clear();
@@ -119,8 +119,28 @@ Result<void> collect_packets(Reader::State& reader, const RunInfo& info, Page& p
             add(to_item(sample, {}, {}));
         }
     }
-    if (count == page.limit + 1 || octets >= kinds.octets_max) page.through = std::min(page.through, last);
+    if (count < page.limit + 1 && octets < kinds.octets_max) return {};
+    if (page.newest_first())
+        page.after = std::max<Sequence>(page.after, last - 1);
+    else
+        page.through = std::min(page.through, last);
     return {};
+}
+
+/// Collects the items of all kinds.
+Result<void> collect_all(Reader::State& reader, Page& page, Reader::ItemKinds kinds) {
+    if (auto fits = check_limit(page.limit, items_page_max); !fits) return fits;
+    const auto instant = reader.instant(page.run);
+    if (!instant) return instant.error();
+    if (page.after >= page.through) return {};
+    auto done = try_item_kinds([&]<typename Record>(ItemKind<Record>) {
+        if constexpr (std::is_same_v<Record, PacketRecord>)
+            return kinds.packets || kinds.samples ? collect_packets(reader, instant->run, page, kinds) : Result<void>{};
+        else
+            return collect<Record>(reader, instant->run, page);
+    });
+    if (done) finish(page);
+    return done;
 }
 
 }  // namespace
@@ -130,24 +150,20 @@ Result<ItemPage> Reader::items(RunId run, Sequence after, std::size_t limit) {
 }
 
 Result<ItemPage> Reader::items(RunId run, Sequence after, std::size_t limit, ItemKinds kinds) {
-    if (auto fits = check_limit(limit, items_page_max); !fits) return fits.error();
-    const auto instant = state_->instant(run);
-    if (!instant) return instant.error();
     const auto last = state_->last_seq(run);
     if (!last) return last.error();
-    if (after >= *last) return ItemPage{{}, *last, false};
+    Page page{run, std::min(after, *last), *last, limit};
+    if (auto done = collect_all(*state_, page, kinds); !done) return done.error();
+    return ItemPage{std::move(page.items), page.through, page.through < *last, after};
+}
 
-    Page page{run, after, *last, limit};
-    const auto done = try_item_kinds([&]<typename Record>(ItemKind<Record>) {
-        if constexpr (std::is_same_v<Record, PacketRecord>)
-            return kinds.packets || kinds.samples ? collect_packets(*state_, instant->run, page, kinds)
-                                                  : Result<void>{};
-        else
-            return collect<Record>(*state_, instant->run, page);
-    });
-    if (!done) return done.error();
-    finish(page);
-    return ItemPage{std::move(page.items), page.through, page.through < *last};
+Result<ItemPage> Reader::newest_items(RunId run, Sequence before, std::size_t limit, ItemKinds kinds) {
+    const auto last = state_->last_seq(run);
+    if (!last) return last.error();
+    const Sequence through = before == 0 ? *last : std::min(before - 1, *last);
+    Page page{run, 0, through, limit, Order::newest_first};
+    if (auto done = collect_all(*state_, page, kinds); !done) return done.error();
+    return ItemPage{std::move(page.items), through, page.after > 0, page.after};
 }
 
 Result<v1::AlarmList> Reader::alarms(RunId run, Sequence after, std::size_t limit, Order order) {

@@ -3,6 +3,7 @@
 
 #include "aeolis/v1/access.pb.h"
 #include "aeolis/v1/layout.pb.h"
+#include "aeolis/v1/plan.pb.h"
 #include "aeolis/v1/run.pb.h"
 #include "server/base/json.hpp"
 #include "tests/server/run_writer.hpp"
@@ -98,6 +99,37 @@ const std::vector<std::string> lists{"events", "tones",    "explanations", "alar
                                      "notes",  "commands", "packets",      "interventions"};
 
 }  // namespace
+
+TEST_CASE("the instructors' plans come in pages as every list does, each once", "[http][R62]") {
+    const RunningServer server;
+    const auto ask = [&](const std::string& query) {
+        return web_request(server.port(), "GET", "/api/v1/plans" + query);
+    };
+    v1::PlanList all;
+    REQUIRE(server::from_json(ask("").body, all).ok());
+    REQUIRE(all.plans_size() > 2);
+    CHECK(all.next_after() == 0);
+    for (const bool newest : {false, true}) {
+        std::vector<std::string> names;
+        for (std::uint64_t after = 0;;) {
+            const auto reply = ask(fmt::format("?limit=2&after={}&order={}", after, newest ? "newest" : "oldest"));
+            REQUIRE(reply.status == 200);
+            CHECK((reply.next_after == "0") == next_of(reply).empty());
+            v1::PlanList page;
+            REQUIRE(server::from_json(reply.body, page).ok());
+            CHECK(page.plans_size() <= 2);
+            CHECK(page.library_size() == all.library_size());
+            for (const auto& plan : page.plans()) names.push_back(plan.name());
+            after = page.next_after();
+            if (after == 0) break;
+        }
+        if (newest) std::ranges::reverse(names);
+        REQUIRE(names.size() == static_cast<std::size_t>(all.plans_size()));
+        for (int i = 0; i < all.plans_size(); ++i) CHECK(names[static_cast<std::size_t>(i)] == all.plans(i).name());
+    }
+    CHECK_THAT(ask("?format=csv").body, Catch::StartsWith("name,title,purpose,scenario,injects\n"));
+    CHECK(ask("?order=sideways").status == 400);
+}
 
 TEST_CASE("every list of a run goes on by Link and Aeolis-Next-After, in each format and either order", "[http][R62]") {
     const auto server = server_with(40, "as planned");

@@ -171,6 +171,30 @@ TEST_CASE("what a rate left out is counted, and comes by HTTP, where all items o
         after = batch.complete_through();
     }
     CHECK(items == seen + left_out);
+    // The newest first: each item once, down to the first, whatever the size of a page.
+    std::uint64_t before = 2'000, expected = before - 1;
+    for (unsigned limit = 1; expected > 0; limit = std::min(3 * limit, 1000U)) {
+        const auto page = web_request(
+            server.port(), "GET",
+            fmt::format("/api/v1/runs/latest/items?format=protobuf&order=newest&after={}&limit={}", before, limit));
+        REQUIRE(page.status == 200);
+        v1::Batch batch;
+        REQUIRE(batch.ParseFromString(page.body));
+        CHECK(batch.complete_through() == before - 1);
+        REQUIRE(batch.items_size() > 0);
+        for (const auto& item : batch.items()) {
+            REQUIRE(item.seq() == expected--);
+            if (by_stream.contains(item.seq())) CHECK(item.SerializeAsString() == by_stream[item.seq()]);
+        }
+        CHECK(batch.after_seq() == expected);
+        CHECK(page.next_after == std::to_string(expected == 0 ? 0 : expected + 1));
+        before = expected + 1;
+    }
+    const auto newest = web_request(server.port(), "GET", "/api/v1/runs/latest/items?order=newest&limit=3");
+    CHECK_THAT(newest.body, Catch::Contains("\"after_seq\":"));
+    CHECK(std::ranges::any_of(newest.fields, [](const auto& field) {
+        return field.first == "Link" && field.second.find("order=newest&limit=3&after=") != std::string::npos;
+    }));
     CHECK(web_request(server.port(), "GET", "/api/v1/runs/latest/items?limit=1001").status == 400);
     CHECK_THAT(web_request(server.port(), "GET", "/api/v1/runs/latest/items?names=nonsense").body,
                Catch::Contains("names: there is no channel 'nonsense'"));
@@ -263,8 +287,8 @@ TEST_CASE("UHF packets and decoded tones are streamed while the vehicle flies, a
     REQUIRE(durable);
     CHECK(*durable >= client.complete_through);  // published means durable
     const auto metrics = web_request(server.port(), "GET", "/metrics").body;
-    CHECK_THAT(metrics, Catch::Contains("aeolis_link_units_total{link=\"uhf_live\"} ") &&
-                            Catch::Contains("aeolis_link_units_total{link=\"tones\"} "));
+    CHECK_THAT(metrics, Catch::Contains("aeolis_link_packets_total{link=\"uhf_live\"} ") &&
+                            Catch::Contains("aeolis_link_packets_total{link=\"tones\"} "));
     CHECK_THAT(metrics,
                Catch::Contains("aeolis_stream_clients_behind ") && !Catch::Contains("aeolis_stream_octets_total 0\n"));
 }
