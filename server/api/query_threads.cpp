@@ -124,15 +124,24 @@ void QueryThreads::end() {
     threads_.clear();
 }
 
-bool QueryThreads::may_begin(JobPriority kind, const std::string& client) const {
+std::size_t QueryThreads::of_client_now() const {
+    const auto& waiting = waiting_[static_cast<std::size_t>(JobPriority::in_turn)].clients();
+    const auto further =
+        std::ranges::count_if(waiting, [this](const std::string& client) { return !questions_of_.contains(client); });
+    return questions_of_.size() + static_cast<std::size_t>(further) < crowd_min ? of_client_max : 1;
+}
+
+bool QueryThreads::may_begin(JobPriority kind, const std::string& client, std::size_t of_client) const {
     if (kind != JobPriority::in_turn || client.empty() || over_) return true;
     const auto under_way = questions_of_.find(client);
-    return under_way == questions_of_.end() || under_way->second < of_client_max;
+    return under_way == questions_of_.end() || under_way->second < of_client;
 }
 
 std::optional<QueryThreads::WaitingJob> QueryThreads::next(std::span<const JobPriority> kinds) {
     const auto may = [this](JobPriority kind) {
-        return [this, kind](const std::string& client) { return may_begin(kind, client); };
+        return [this, kind, of_client = of_client_now()](const std::string& client) {
+            return may_begin(kind, client, of_client);
+        };
     };
     const auto first = [&] {
         return std::ranges::find_if(

@@ -40,17 +40,19 @@ struct Asker {
 /// Threads that query the archive, each with its own read-only connection. A thread reconnects when the file was
 /// replaced under its name. A long query never delays the network or the writer.
 ///
-/// Shares   clients are served in turn. One client's queries take of_client_max threads at most; of the queries under
-///          way running_max run at a time, in turn for a slice each. So a query waits for a few slices while a thread
-///          is free, and for the end of another query when other clients have taken all of them
+/// Shares   clients are served in turn. One client's queries take of_client_max threads at most, and a single one once
+///          crowd_min clients ask; of the queries under way running_max run at a time, in turn for a slice each. So a
+///          query waits for a few slices while a thread is free, and for the end of another query when as many other
+///          clients ask as there are threads
 /// Short    one thread takes no queries (in_turn), so that short jobs always proceed. The others take queries before
 ///          jobs of priority `soon`, so that a thousand clients catching up delay nobody's query
 class QueryThreads {
   public:
-    static constexpr std::size_t question_threads = 6;  ///< chosen: each holds a connection of some MB
+    static constexpr std::size_t question_threads = 10;  ///< chosen: each holds a connection of 2 MB and more
     static constexpr std::size_t threads = question_threads + 1;
     static constexpr std::size_t running_max = 2;          ///< chosen: of question threads at a time; others are paused
     static constexpr std::size_t of_client_max = 2;        ///< chosen: question threads for one client's queries
+    static constexpr std::size_t crowd_min = 3;            ///< chosen: clients from which on each has only one
     static constexpr std::chrono::milliseconds slice{10};  ///< chosen: before a query gives way to one that waits
     /// Chosen, by JobPriority; beyond it a job is refused ("busy"). Each stream connection asks for one page at a time,
     /// and there are at most 1 000 of them: room for two pages each means that none is refused.
@@ -105,8 +107,10 @@ class QueryThreads {
     };
     /// Takes the next job of the first of `kinds` that has one; none once ended and none of these kinds waits.
     std::optional<WaitingJob> next(std::span<const JobPriority> kinds);
-    /// Whether a client's job of this kind may begin now. Call with mutex_ held.
-    bool may_begin(JobPriority kind, const std::string& client) const;
+    /// How many queries of one client may be under way now. Call with mutex_ held.
+    std::size_t of_client_now() const;
+    /// Whether a client's job of this kind may begin now, by of_client_now(). Call with mutex_ held.
+    bool may_begin(JobPriority kind, const std::string& client, std::size_t of_client) const;
     void note_wait(const WaitingJob& taken);  ///< call with mutex_ held
     void serve(archive::Reader& reader, std::span<const JobPriority> kinds, const Open& open,
                std::chrono::milliseconds question_max);

@@ -53,6 +53,8 @@ class TurnQueue {
         return std::ranges::any_of(turns_, may);
     }
     std::size_t size() const { return size_; }
+    /// The clients with jobs, the next one first.
+    const std::deque<std::string>& clients() const { return turns_; }
 
   private:
     std::size_t all_max_, each_max_;

@@ -6,6 +6,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/slept_time.hpp"
 
+#include <fmt/format.h>
 #include <future>
 
 namespace server_query_threads_test {
@@ -127,6 +128,30 @@ TEST_CASE("a question of one client is answered while another's slow ones go on 
         CHECK(answered.get());
     }
     CHECK(threads.waiting() > 50);
+    enough = true;
+}
+
+TEST_CASE("a client's question is answered while many others' slow ones go on, each of them with one of its own",
+          "[http][bounds][R63]") {
+    std::atomic<bool> enough{false};
+    const Recorded recorded;
+    auto& threads = *recorded.threads;
+    const auto slow = [&](archive::Reader& reader) {
+        while (!enough && !reader.stopped()) (void)reader.proof(archive::RunId{1}).ok();
+    };
+    // The first two have two under way each: nobody else asked then. One thread is left for who comes last.
+    constexpr auto greedy = QueryThreads::question_threads - QueryThreads::crowd_min;
+    for (std::size_t client = 0; client < greedy; ++client)
+        for (int i = 0; i < 10; ++i) REQUIRE(threads.ask(slow, {.client = fmt::format("greedy {}", client)}));
+    for (int i = 0; i < 5; ++i) {
+        std::promise<bool> told;
+        auto answered = told.get_future();
+        REQUIRE(threads.ask([&](archive::Reader& reader) { told.set_value(reader.proof(archive::RunId{1}).ok()); },
+                            {.client = "careful"}));
+        REQUIRE(answered.wait_for(std::chrono::seconds{60}) == std::future_status::ready);
+        CHECK(answered.get());
+    }
+    CHECK(threads.waiting() >= 10 * greedy - QueryThreads::question_threads);
     enough = true;
 }
 
