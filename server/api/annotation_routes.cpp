@@ -9,11 +9,15 @@
 namespace aeolis::server {
 namespace {
 
-/// The callback that answers with the stored item, once it is durable.
-std::function<void(Result<archive::Annotation>)> added(const Respond& respond) {
-    return [respond](const Result<archive::Annotation>& annotation) {
-        if (!annotation) return respond(error_response(503, annotation.error()));
-        respond(json_response(archive::to_item(*annotation), 201));
+/// The callback that answers with the stored item, once it is durable. What is taken and not stored yet is answered
+/// without Retry-After: sent again, it would be there twice.
+std::function<void(Result<PipelineThread::Annotated>)> added(const Respond& respond) {
+    return [respond](const Result<PipelineThread::Annotated>& annotated) {
+        if (!annotated)
+            return respond(annotated.error().internal ? error_response(500, annotated.error().message)
+                                                      : disk_response(annotated.error().message));
+        if (!annotated->not_stored_yet.empty()) return respond(error_response(503, annotated->not_stored_yet));
+        respond(json_response(archive::to_item(annotated->annotation), 201));
     };
 }
 
@@ -37,7 +41,7 @@ void Api::annotate(const ApiRequest& call, Annotating annotating) {
         auto made = annotating(reader, id, clock(id).value_or(*newest));
         if (auto* refused = std::get_if<HttpResponse>(&made)) return std::move(*refused);
         if (parts_.pipeline.annotate(id, std::get<archive::Annotation>(std::move(made)), added(respond))) return {};
-        return error_response(503, "too much waits to be stored: try again");
+        return full_response("too much waits to be stored: try again");
     };
     ask(call, {}, question, JobPriority::at_once);
 }

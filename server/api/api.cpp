@@ -25,6 +25,8 @@ constexpr std::size_t brief_body_octets_max =
     32'768;                                      ///< chosen: an escaped note of full length; a list of 1000 commands
 constexpr std::size_t audit_detail_max = 2'000;  ///< chosen: of a request's body
 constexpr std::size_t audit_outcome_max = 500;   ///< chosen: of an answer's body
+constexpr std::chrono::seconds queue_retry{1};
+constexpr std::chrono::seconds disk_retry{5};  ///< chosen: somebody makes room
 
 std::vector<std::string> split(std::string_view path) {
     std::vector<std::string> parts;
@@ -87,12 +89,22 @@ HttpResponse error_response(unsigned status, const Error& error) {
 }
 
 HttpResponse busy_response() {
-    return retry_response(503, QueryThreads::busy, std::chrono::seconds{1});
+    return full_response(QueryThreads::busy);
+}
+
+HttpResponse full_response(const std::string& error) {
+    return retry_response(503, error, queue_retry);
+}
+
+HttpResponse disk_response(const std::string& error) {
+    return retry_response(503, error, disk_retry);
 }
 
 HttpResponse stopped_response(std::string_view instead) {
-    return error_response(503, fmt::format("the question was stopped after {} s: {}",
-                                           QueryThreads::question_seconds_max.count(), instead));
+    return retry_response(
+        503,
+        fmt::format("the question was stopped after {} s: {}", QueryThreads::question_seconds_max.count(), instead),
+        QueryThreads::question_seconds_max);
 }
 
 HttpResponse refusal_of(const Operator& who, Right right) {
@@ -209,12 +221,14 @@ std::span<const Api::Route> Api::routes() {
 Api::Api(Parts parts)
     : parts_(std::move(parts)), dictionary_json_(to_json_by_rows(dictionary_reply(parts_.dictionary), "channels")) {}
 
+void Api::count(const std::string& route, unsigned status) {
+    const std::scoped_lock lock{counts_mutex_};
+    ++responses_[{route, status}];
+}
+
 Respond Api::counted(std::string route, const Respond& respond) {
     return [this, route = std::move(route), respond](HttpResponse response) {
-        {
-            const std::scoped_lock lock{counts_mutex_};
-            ++responses_[{route, response.status}];
-        }
+        count(route, response.status);
         respond(std::move(response));
     };
 }
@@ -265,8 +279,7 @@ void Api::answer(const Route& route, ApiRequest call) {
         refused =
             error_response(404, fmt::format("run '{}': there is none; a number or 'latest' is wanted", call.parts[0]));
     if (refused.status == 200 && changes && !parts_.pipeline.audit_has_room())
-        return call.respond(
-            error_response(503, "nothing is done that the audit cannot take: " + parts_.pipeline.fault()));
+        return call.respond(disk_response("nothing is done that the audit cannot take: " + parts_.pipeline.fault()));
     const bool of_origin = changes && (route.right == Right::command || route.right == Right::rehearse);
     const bool asks_origin = of_origin && parts_.to_origin && route.right == Right::command && route.for_origin;
     if (refused.status == 200 && of_origin && !asks_origin && !parts_.follows.empty())
@@ -427,10 +440,10 @@ void Api::list_scenarios(const ApiRequest& call) {
 }
 
 void Api::list_plans(const ApiRequest& call) {
-    if (const auto none = QueryText::parse(call.request.query, {}); !none)
-        return call.respond(error_response(400, none.error()));
-    answer_on_query_thread(
-        call, [this](archive::Reader&) { return json_response(parts_.plans.list()); }, JobPriority::in_turn);
+    answer_page(call, ListPage::usual(archive::Order::oldest_first),
+                [this](archive::Reader&, const ListRequest& wanted) {
+                    return wanted.response_of_whole(parts_.plans.list(), {"plans"});
+                });
 }
 
 void Api::dictionary(const ApiRequest& call) {
@@ -440,8 +453,8 @@ void Api::dictionary(const ApiRequest& call) {
 }
 
 void Api::stream(const ApiRequest& call) {
-    call.respond(error_response(426, "the stream is a WebSocket: ask for an upgrade, with one of the "
-                                     "subprotocols aeolis.v1.protobuf, aeolis.v1.json"));
+    call.respond(upgrade_response("the stream is a WebSocket: ask for an upgrade, with one of the subprotocols "
+                                  "aeolis.v1.protobuf, aeolis.v1.json"));
 }
 
 void Api::health(const ApiRequest& call) {
@@ -451,8 +464,10 @@ void Api::health(const ApiRequest& call) {
                              : may(call.who, Right::watch) ? fault
                                                            : "the archive cannot be written";
     const auto others = parts_.replication && may(call.who, Right::watch) ? parts_.replication().line : "";
-    call.respond({fault.empty() ? 200U : 503U, "text/plain; charset=utf-8", "no-store",
-                  text + (others.empty() ? "\n" : "\n" + others + "\n")});
+    HttpResponse response{fault.empty() ? 200U : 503U, "text/plain; charset=utf-8", "no-store",
+                          text + (others.empty() ? "\n" : "\n" + others + "\n")};
+    if (!fault.empty()) response.fields.emplace_back("Retry-After", std::to_string(disk_retry.count()));
+    call.respond(std::move(response));
 }
 
 void Api::remove_run(const ApiRequest& call) {
@@ -465,7 +480,7 @@ void Api::remove_run(const ApiRequest& call) {
         respond(pruned ? HttpResponse{204, "application/json", "no-store", ""} : error_response(404, pruned.error()));
     };
     if (!parts_.pipeline.prune(*run, audit_record(call.who, "prune", "", ""), done))
-        call.respond(error_response(503, "nothing was removed, too much waits to be stored: try again"));
+        call.respond(full_response("nothing was removed, too much waits to be stored: try again"));
 }
 
 v1::RunState Api::current_run() const {

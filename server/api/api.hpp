@@ -83,6 +83,8 @@ class Api {
     explicit Api(Parts parts);
 
     void handle(HttpRequest request, const Respond& respond_with);
+    /// Counts a response for the metrics. From any thread.
+    void count(const std::string& route, unsigned status);
     /// Whether people at a follower may ask this of their origin: commands, notes, actions on alarms.
     static bool is_for_origin(std::string_view method, std::string_view path);
     /// Why an operator must send no more commands now, and for how long.
@@ -220,6 +222,10 @@ class Api {
 HttpResponse busy_response();
 /// An error response with `status`; with 500 when the fault is the server's.
 HttpResponse error_response(unsigned status, const Error& error);
+/// 503: nothing was done, and the request may be sent again after a time: chosen by what is waited for. A request that
+/// changes something and was taken all the same is answered without one (post_note).
+HttpResponse full_response(const std::string& error);  ///< a queue, empty again within a second
+HttpResponse disk_response(const std::string& error);  ///< a disk that refuses
 HttpResponse json_response(const google::protobuf::Message& message, unsigned status = 200);
 
 /// The client that a request counts for: an account, without accounts a browser, else the network it comes from.

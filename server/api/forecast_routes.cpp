@@ -34,7 +34,7 @@ void Api::post_forecast(const ApiRequest& call) {
         if (auto refusal = refusal_of(call.who, Right::instruct); refusal.status != 200)
             return call.respond(std::move(refusal));
     if (const auto place = parts_.forecasts->reserve(truth); !place)
-        return call.respond(error_response(503, place.error()));
+        return call.respond(full_response(place.error().message));
     const std::weak_ptr<shadow::ForecastService> service = parts_.forecasts;
     const auto give_back = [service, truth](const Respond& respond) -> Respond {
         return [service, truth, respond](HttpResponse response) {
@@ -57,10 +57,10 @@ void Api::post_forecast(const ApiRequest& call) {
             read->record.asked_by = by;
             const auto kept = [service, truth, read = *read, respond](const Result<std::uint64_t>& number) mutable {
                 const auto forecasts = service.lock();  // on the pipeline's thread, which may outlive it
-                if (!forecasts) return respond(error_response(503, "the server ends"));
+                if (!forecasts) return respond(disk_response("the server ends"));
                 if (!number) {
                     forecasts->fill(truth, {});
-                    return respond(error_response(503, number.error()));
+                    return respond(disk_response(number.error().message));
                 }
                 read.record.number = *number;
                 const auto record = read.record;
@@ -68,7 +68,7 @@ void Api::post_forecast(const ApiRequest& call) {
                 respond(json_response(forecasts->now(record), 201));
             };
             if (!parts_.pipeline.keep_forecast(read->record, kept))
-                return error_response(503, "nothing was asked, too much waits to be stored: try again");
+                return full_response("nothing was asked, too much waits to be stored: try again");
             return std::nullopt;
         },
         JobPriority::soon);

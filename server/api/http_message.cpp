@@ -23,6 +23,7 @@ constexpr std::array phrases{
     Phrase{405, "Method Not Allowed"},
     Phrase{409, "Conflict"},
     Phrase{413, "Content Too Large"},
+    Phrase{414, "URI Too Long"},
     Phrase{417, "Expectation Failed"},
     Phrase{422, "Unprocessable Content"},
     Phrase{426, "Upgrade Required"},
@@ -51,6 +52,15 @@ HttpResponse error_response(unsigned status, const std::string& error) {
     response.status = status;
     response.content_type = "application/problem+json";
     response.body = to_json(problem);
+    if (status == 401) response.fields.emplace_back("WWW-Authenticate", "Bearer");
+    return response;
+}
+
+HttpResponse upgrade_response(const std::string& error) {
+    auto response = error_response(426, error);
+    response.fields.emplace_back("Upgrade", "websocket");
+    response.fields.emplace_back("Connection", "Upgrade");
+    response.fields.emplace_back("Sec-WebSocket-Version", "13");
     return response;
 }
 

@@ -37,8 +37,8 @@ struct HttpResponse {
     std::string content_type = "application/json";
     std::string cache_control = "no-store";
     std::string body;
-    /// Header fields of this response alone: Set-Cookie, Allow, Retry-After, Aeolis-Next-After, Link, Vary,
-    /// Content-Encoding.
+    /// Header fields of this response alone: Set-Cookie, Allow, Retry-After, WWW-Authenticate, Upgrade,
+    /// Aeolis-Next-After, Link, Vary, Content-Encoding.
     std::vector<std::pair<std::string, std::string>> fields{};
     /// Null: `body` is the whole body. Else `body` is its first part, and this is called for each further part once the
     /// client has taken the one before; the answer may come from any thread. An Error closes the connection, so that
@@ -49,8 +49,10 @@ struct HttpResponse {
 };
 
 /// Makes a problem (RFC 9457), the form of every error: the status, its reason phrase, and a sentence that names the
-/// fault.
+/// fault. 401 names the scheme by which one may be known [RFC 9110, 11.6.1].
 HttpResponse error_response(unsigned status, const std::string& error);
+/// Makes the problem 426, which names the protocol that is wanted: WebSocket of version 13.
+HttpResponse upgrade_response(const std::string& error);
 /// Makes a problem that passes by itself, with the time after which the client may send the request again.
 HttpResponse retry_response(unsigned status, const std::string& error, std::chrono::seconds after);
 

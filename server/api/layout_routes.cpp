@@ -16,7 +16,7 @@ std::string owner_of(const Operator& who) {
 }
 
 HttpResponse outcome_response(const Result<archive::LayoutOutcome>& outcome, const archive::LayoutChange& change) {
-    if (!outcome) return error_response(503, "nothing was changed: " + outcome.error().message);
+    if (!outcome) return disk_response("nothing was changed: " + outcome.error().message);
     switch (*outcome) {
     case archive::LayoutOutcome::absent:
         return error_response(404, fmt::format("there is no layout '{}'", change.name));
@@ -76,7 +76,7 @@ void Api::change_layout(const ApiRequest& call, archive::LayoutChange change) {
         respond(outcome_response(outcome, change));
     };
     if (!parts_.pipeline.change_layout(std::move(change), done))
-        call.respond(error_response(503, "nothing was changed, too much waits to be stored: try again"));
+        call.respond(full_response("nothing was changed, too much waits to be stored: try again"));
 }
 
 }  // namespace aeolis::server

@@ -51,7 +51,7 @@ HttpResponse StaticFiles::file(std::string_view path) const {
     std::error_code error;
     const auto root = std::filesystem::canonical(directory_, error);
     if (error || !std::filesystem::is_regular_file(root / "index.html", error))
-        return {503, "text/html; charset=utf-8", "no-store", not_built_page};
+        return {503, "text/html; charset=utf-8", "no-store", not_built_page, {{"Retry-After", "10"}}};
 
     const std::filesystem::path wanted{path == "/" ? "index.html" : path.substr(1)};
     const auto file = std::filesystem::canonical(root / wanted, error);

@@ -54,7 +54,11 @@ class RequestSender::Thread {
                 answered = nullptr;
             }
         }
-        if (answered) return answered(no_answer("too many requests wait for the origin: try again"));
+        if (answered) {  // never sent, so that it may be sent again
+            auto full = no_answer("too many requests wait for the origin: try again");
+            full.set_retry_after_s(1);
+            return answered(std::move(full));
+        }
         wake_.notify_all();
     }
 

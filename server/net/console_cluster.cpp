@@ -176,12 +176,11 @@ v1::FollowerRequest request_of(const Operator& who, std::string method, std::str
 void ConsoleBackend::ask_origin(const ApiRequest& call) {
     to_origin_->ask(request_of(call.who, call.request.method, call.request.path, call.request.body),
                     [respond = call.respond](v1::RequestAnswer answer) {
-                        if (answer.content_type().empty())
-                            return respond(error_response(answer.status(), answer.body()));
-                        HttpResponse response;
-                        response.status = answer.status();
-                        response.content_type = answer.content_type();
-                        response.body = std::move(*answer.mutable_body());
+                        HttpResponse response = error_response(answer.status(), answer.body());
+                        if (!answer.content_type().empty()) {
+                            response.content_type = answer.content_type();
+                            response.body = std::move(*answer.mutable_body());
+                        }
                         if (answer.retry_after_s() > 0)
                             response.fields.emplace_back("Retry-After", std::to_string(answer.retry_after_s()));
                         respond(std::move(response));

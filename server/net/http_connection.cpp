@@ -29,7 +29,9 @@ using Parser = http::request_parser<http::string_body>;
 using NextPart = decltype(HttpResponse::next_part);
 
 constexpr const char* stream_path = "/api/v1/stream";
-constexpr std::size_t slice_octets = 64 << 10;  // chosen: of a long body sent in parts
+constexpr const char* stream_route = "GET /api/v1/stream";
+constexpr std::size_t slice_octets = 64 << 10;    // chosen: of a long body sent in parts
+constexpr std::size_t websocket_key_octets = 24;  // 16 in base64 [RFC 6455, 4.1]
 
 /// The console loads nothing from elsewhere and must not be shown in a frame.
 constexpr const char* security_policy =
@@ -82,13 +84,24 @@ Response error_reply(const Request& request, http::status status, const std::str
     return response;
 }
 
+/// 503, and the request may be sent again soon.
+Response retry_reply(const Request& request, const std::string& error) {
+    auto answer = retry_response(503, error, std::chrono::seconds{1});
+    auto response = response_of(answer, request.version() == 10 ? 10U : 11U);
+    response.prepare_payload();
+    return response;
+}
+
 /// The response to a request that is not HTTP or too long. @param octets_max  limit of its body
 Response broken_reply(const Request& request, const error_code& error, std::size_t octets_max) {
     if (error == http::error::body_limit)
         return error_reply(request, http::status::payload_too_large,
                            fmt::format("the body is longer than {} octets", octets_max));
+    if (error == http::error::header_limit && request.target().empty())  // its first line has not ended
+        return error_reply(request, http::status::uri_too_long,
+                           fmt::format("the target is longer than {} octets", WebServer::header_octets_max));
     if (error == http::error::header_limit)
-        return error_reply(request, http::status::payload_too_large,
+        return error_reply(request, http::status::request_header_fields_too_large,
                            fmt::format("the header is longer than {} octets", WebServer::header_octets_max));
     return error_reply(request, http::status::bad_request, "this is not HTTP: " + error.message());
 }
@@ -146,6 +159,7 @@ class HttpConnection {
     Task<bool> invite_body(const Parser& parser);
     Task<> answer_broken(const Request& request, error_code error, std::size_t octets_max);
     Task<bool> end_with(Response reply);
+    void count(const char* route, const Response& response) const;
     std::string refusal_of(const Request& request, const std::string& host) const;
     std::optional<Response> refusal_of_stream(const Exchange& exchange) const;
     Task<> become_stream(Exchange& exchange);
@@ -255,10 +269,17 @@ Task<bool> HttpConnection<AnyStream>::invite_body(const Parser& parser) {
 /// Sends the last response of the connection; false.
 template <typename AnyStream>
 Task<bool> HttpConnection<AnyStream>::end_with(Response reply) {
+    count("none", reply);
     reply.keep_alive(false);
     error_code ignored;
     co_await http::async_write(stream_, reply, asio::redirect_error(awaiting, ignored));
     co_return false;
+}
+
+/// Counts a response that no handler gave.
+template <typename AnyStream>
+void HttpConnection<AnyStream>::count(const char* route, const Response& response) const {
+    if (service_.handlers.refused) service_.handlers.refused(route, response.result_int());
 }
 
 /// Answers only errors within HTTP; a broken or silent connection gets no answer.
@@ -273,21 +294,24 @@ template <typename AnyStream>
 Task<bool> HttpConnection<AnyStream>::answer(Exchange& exchange) {
     const auto& request = exchange.request;
     auto target = target_of(request);
+    const char* route = "none";
     if (!target) {
         exchange.response = error_reply(request, http::status::bad_request, target.error().message);
     } else if (const auto refusal = refusal_of(request, target->host); !refusal.empty()) {
         exchange.response = error_reply(request, http::status::forbidden, refusal);
     } else if (const auto no_place = refusal_of_share(exchange.credentials); !no_place.empty()) {
-        auto refused = retry_response(503, no_place, std::chrono::seconds{1});
-        exchange.response = response_of(refused, request.version());
+        exchange.response = retry_reply(request, no_place);
     } else if (!websocket::is_upgrade(request) || target->path != stream_path) {
         co_await ask(exchange, std::move(target->path), std::move(target->query));
+        co_return true;
     } else if (auto refused = refusal_of_stream(exchange)) {
+        route = stream_route;
         exchange.response = std::move(*refused);
     } else {
         co_await become_stream(exchange);
         co_return false;
     }
+    count(route, exchange.response);
     co_return true;
 }
 
@@ -304,17 +328,17 @@ template <typename AnyStream>
 std::optional<Response> HttpConnection<AnyStream>::refusal_of_stream(const Exchange& exchange) const {
     const auto& request = exchange.request;
     auto admitted = service_.handlers.admit_stream(exchange.credentials);
-    if (admitted.status != 200) {
-        Response response{static_cast<http::status>(admitted.status), request.version()};
-        response.set(http::field::content_type, admitted.content_type);
-        response.body() = std::move(admitted.body);
-        return response;
+    if (admitted.status != 200) return response_of(admitted, request.version());
+    if (plain(request[http::field::sec_websocket_version]) != "13") {
+        auto refused = upgrade_response("Sec-WebSocket-Version: 13 is wanted");
+        return response_of(refused, request.version());
     }
+    if (request[http::field::sec_websocket_key].size() != websocket_key_octets)
+        return error_reply(request, http::status::bad_request, "Sec-WebSocket-Key: 16 octets in base64 are wanted");
     if (chosen_subprotocol(request) == nullptr)
         return error_reply(request, http::status::bad_request,
                            "the stream speaks the subprotocols aeolis.v1.protobuf and aeolis.v1.json: offer one");
-    if (const auto no_place = service_.streams.refusal(); !no_place.empty())
-        return error_reply(request, http::status::service_unavailable, no_place);
+    if (const auto no_place = service_.streams.refusal(); !no_place.empty()) return retry_reply(request, no_place);
     return std::nullopt;
 }
 

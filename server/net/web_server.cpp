@@ -88,6 +88,7 @@ Task<> WebServer::State::serve(Socket socket) {
     socket.set_option(tcp::no_delay{true}, ignored);
     Stream stream{std::move(socket)};
     Peer peer{from, place ? *place : nullptr};
+    if (!refused.empty() && service.handlers.refused) service.handlers.refused("none", 503);
     if (tls)
         co_await serve_tls(std::move(stream), std::move(peer), refused);
     else if (!refused.empty())

@@ -37,6 +37,9 @@ class WebServer {
 
     struct Handlers {
         std::function<void(HttpRequest, Respond)> request;
+        /// Told of each response that the server gives by itself: to what breaks HTTP, its origin or a limit, and the
+        /// denial of a stream. `route` as in the metrics. Null: nobody counts.
+        std::function<void(const char* route, unsigned status)> refused;
         /// Finds the person whose share of the connections a request takes. None: a stranger; empty: somebody known, on
         /// a server without accounts. Null: everybody is known.
         std::function<std::optional<std::string>(const Credentials&)> person;

@@ -269,16 +269,17 @@ Result<void> PipelineThread::finish(const archive::RunEnd& end) {
 }
 
 bool PipelineThread::annotate(archive::RunId run, archive::Annotation annotation,
-                              std::function<void(Result<archive::Annotation>)> done) {
+                              std::function<void(Result<Annotated>)> done) {
     return !blocked() && jobs_.try_push(Action{[this, run, annotation = std::move(annotation), done = std::move(done)] {
         auto added = pipeline_.annotate(run, annotation);
-        if (!added) return done(std::move(added));
+        if (!added) return done(added.error());
         tell_audit_head();  // a run that has ended got another fingerprint
         // Answered after the commit, as a command is: a failing disk must not delay what arrives meanwhile.
         answers_.push_back([done, added = std::move(added)](const std::string& fault) {
-            if (fault.empty()) return done(added);
-            done(Error{fmt::format(
-                "this is taken, and stored as soon as the disk takes it; do not send it again. Now: {}", fault)});
+            if (fault.empty()) return done(Annotated{*added});
+            done(Annotated{*added, fmt::format("this is taken, and stored as soon as the disk takes it; do not send it "
+                                               "again. Now: {}",
+                                               fault)});
         });
     }});
 }

@@ -91,10 +91,13 @@ class PipelineThread {
     void audit(archive::AuditRecord record, std::function<void()> kept = {});
     /// Whether audited actions may still be carried out: false while too many records wait for a failing disk.
     bool audit_has_room() const;
-    /// Adds a person's annotation to any run. Calls `done` on this thread once it is durable, or with an Error:
-    /// refused, or taken but not stored while the disk refuses. False, and nothing done, when too much waits.
-    bool annotate(archive::RunId run, archive::Annotation annotation,
-                  std::function<void(Result<archive::Annotation>)> done);
+    struct Annotated {
+        archive::Annotation annotation;
+        std::string not_stored_yet{};  ///< taken, but the disk refuses it for now; empty: durable
+    };
+    /// Adds a person's annotation to any run. Calls `done` on this thread once it is durable or the disk refuses it for
+    /// now, or with an Error: nothing was added. False, and nothing done, when too much waits.
+    bool annotate(archive::RunId run, archive::Annotation annotation, std::function<void(Result<Annotated>)> done);
 
     /// Stores a forecast. Calls `done` on this thread with its number once it is durable, or with an Error. False, and
     /// nothing done, when too much waits.

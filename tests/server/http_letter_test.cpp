@@ -136,6 +136,67 @@ TEST_CASE("methods, paths and expectations that are none here are refused by the
     CHECK_THAT(ask("POST /api/v1/session", "Expect: tea\r\nContent-Length: 2\r\n"), Catch::StartsWith("HTTP/1.1 417 "));
 }
 
+TEST_CASE("a refusal names what would be accepted: the scheme of 401, the protocol of 426", "[http][access][R63]") {
+    RunningServer server{RunningServer::WithAccounts{}};
+    const auto ask = [&](const std::string& head, const std::string& more = "") {
+        return raw_exchange(server.port(),
+                            head + " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n" + more + "\r\n");
+    };
+    const auto upgrade = [&](const std::string& more) {
+        return raw_exchange(server.port(), "GET /api/v1/stream HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\n"
+                                           "Connection: Upgrade, close\r\nSec-WebSocket-Protocol: aeolis.v1.json\r\n" +
+                                               more + "\r\n");
+    };
+    constexpr const char* body = R"({"user":"administrator","password":"wrong"})";
+    for (const auto& answer : {ask("GET /api/v1/runs"), ask("GET /api/v1/stream"), upgrade(""),
+                               ask("POST /api/v1/session",
+                                   fmt::format("Content-Length: {}\r\n\r\n{}", std::string_view{body}.size(), body))})
+        CHECK_THAT(answer, Catch::StartsWith("HTTP/1.1 401 ") && Catch::Contains("\r\nWWW-Authenticate: Bearer\r\n") &&
+                               Catch::Contains("application/problem+json"));
+
+    RunningServer open;
+    const auto ask_open = [&](const std::string& octets) { return raw_exchange(open.port(), octets); };
+    const std::string head = "GET /api/v1/stream HTTP/1.1\r\nHost: localhost\r\n", close = "Connection: close\r\n\r\n";
+    const std::string wants = head + "Upgrade: websocket\r\nSec-WebSocket-Protocol: aeolis.v1.json\r\n"
+                                     "Connection: Upgrade, close\r\n";
+    const std::string key = "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
+    for (const auto& request : {head + close, wants + key + "Sec-WebSocket-Version: 8\r\n\r\n", wants + key + "\r\n"})
+        CHECK_THAT(ask_open(request), Catch::StartsWith("HTTP/1.1 426 ") &&
+                                          Catch::Contains("\r\nUpgrade: websocket\r\n") &&
+                                          Catch::Contains("\r\nSec-WebSocket-Version: 13\r\n") &&
+                                          Catch::Contains("application/problem+json"));
+    for (const std::string given : {"", "Sec-WebSocket-Key: short\r\n"})
+        CHECK_THAT(ask_open(wants + given + "Sec-WebSocket-Version: 13\r\n\r\n"),
+                   Catch::StartsWith("HTTP/1.1 400 ") && Catch::Contains("Sec-WebSocket-Key") &&
+                       Catch::Contains("application/problem+json"));
+    // On a connection that stays, the field Connection names the upgrade that is offered.
+    CHECK_THAT(ask_open(head + "\r\n" + head + close), Catch::Contains("\r\nConnection: Upgrade\r\n"));
+}
+
+TEST_CASE("responses to what is no request are counted too", "[http][metrics][R63]") {
+    RunningServer server;
+    const auto count = [&](const char* route, unsigned status) {
+        const auto text = web_request(server.port(), "GET", "/metrics").body;
+        const auto line = fmt::format("\naeolis_http_responses_total{{route=\"{}\",status=\"{}\"}} ", route, status);
+        const auto at = text.find(line);
+        return at == std::string::npos ? 0 : std::stoi(text.substr(at + line.size()));
+    };
+    const std::string host = "Host: localhost\r\n";
+    raw_exchange(server.port(), "this is not HTTP\r\n\r\n");
+    raw_exchange(server.port(), "GET /healthz HTTP/1.1\r\n" + host + host + "\r\n");
+    raw_exchange(server.port(), "GET ftp://localhost/ HTTP/1.1\r\n" + host + "Connection: close\r\n\r\n");
+    CHECK(count("none", 400) == 3);
+    raw_exchange(server.port(), "GET / HTTP/1.1\r\n" + host + "X: " + std::string(20'000, 'x') + "\r\n\r\n");
+    CHECK(count("none", 431) == 1);
+    raw_exchange(server.port(), "GET / HTTP/1.1\r\nHost: evil.example\r\nConnection: close\r\n\r\n");
+    CHECK(count("none", 403) == 1);
+    raw_exchange(server.port(),
+                 "POST /api/v1/session HTTP/1.1\r\n" + host + "Content-Length: 2\r\nExpect: tea\r\n\r\n");
+    CHECK(count("none", 417) == 1);
+    CHECK_FALSE(StreamClient{server.port(), "chat"}.open());
+    CHECK(count("GET /api/v1/stream", 400) == 1);
+}
+
 TEST_CASE("who is locked out is told for how long, by the status of too many requests", "[http][access][R63]") {
     RunningServer server{RunningServer::WithAccounts{}};
     const std::string body = R"({"user":"administrator","password":"wrong"})";

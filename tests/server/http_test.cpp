@@ -25,6 +25,11 @@ using server::from_json;
 
 namespace {
 
+std::string field(const WebReply& reply, std::string_view name) {
+    const auto found = std::ranges::find(reply.fields, name, &std::pair<std::string, std::string>::first);
+    return found == reply.fields.end() ? "" : found->second;
+}
+
 struct Exchange {
     const char* method;
     const char* target;
@@ -254,7 +259,7 @@ TEST_CASE("an event is found by its SCET, its ERT or its time from entry, and a 
     const auto sent = Scet{archive::correlation_of(run).scet_of(Sclk{first.event().sclk()}).microseconds +
                            static_cast<std::int64_t>(run.light_time_s() * 1e6)};
     for (const auto& instant :
-         {scet + "Z", scet + "%2B00:00", scet + " 00:00", "scet:" + scet, "ert:" + day_of_year_text(sent),
+         {scet + "Z", scet + "%2B00:00", scet + "+00:00", "scet:" + scet, "ert:" + day_of_year_text(sent),
           "ert:" + day_of_year_text(sent) + "-00:00", from_entry}) {
         INFO(instant);
         REQUIRE(from_json(ask("/events?from=" + instant + "&to=" + instant).body, found).ok());
@@ -452,15 +457,26 @@ TEST_CASE("what is said while the disk refuses is answered at once, as taken and
         const auto note = post("notes", R"({"text":"the disk is full","by":"ada"})");
         CHECK(note.status == 503);
         CHECK_THAT(note.body, Catch::Contains("do not send it again"));
+        CHECK(field(note, "Retry-After").empty());  // what was taken must not be sent again
+        // What was not taken may be.
+        const auto layout = web_request(server.port(), "PUT", "/api/v1/layouts/mine", R"({"view":"{}"})");
+        CHECK(layout.status == 503);
+        CHECK(field(layout, "Retry-After") == "5");
+        const auto forecast = post("forecasts", R"({"cases":1})");
+        CHECK(forecast.status == 503);
+        CHECK(field(forecast, "Retry-After") == "5");
         const auto command = post("commands", R"({"command":"NO_OP","controller":"ada"})");
         CHECK(command.status == 202);
         CHECK_THAT(command.body, Catch::Contains("not in the archive yet"));
     }
+    const auto sick = web_request(server.port(), "GET", "/healthz");
     disk.mend();
     for (int i = 0; i < 3'000 && !stored("notes", "the disk is full"); ++i)
         std::this_thread::sleep_for(std::chrono::milliseconds{20});
     CHECK(stored("notes", "the disk is full"));
     CHECK(stored("commands", "NO_OP"));
+    CHECK(sick.status == 503);
+    CHECK(field(sick, "Retry-After") == "5");
     CHECK(post("notes", R"({"text":"and well again","by":"ada"})").status == 201);
 }
 
@@ -701,7 +717,9 @@ TEST_CASE("what is no HTTP, too long or cut off costs its own connection only", 
     const auto port = server.port();
     CHECK_THAT(raw_exchange(port, "this is not HTTP\r\n\r\n"), Catch::StartsWith("HTTP/1.1 400"));
     CHECK_THAT(raw_exchange(port, "GET / HTTP/1.1\r\nHost: localhost\r\nX: " + std::string(20'000, 'x') + "\r\n\r\n"),
-               Catch::StartsWith("HTTP/1.1 413"));
+               Catch::StartsWith("HTTP/1.1 431 ") && Catch::Contains("the header is longer than 16384 octets"));
+    CHECK_THAT(raw_exchange(port, "GET /" + std::string(20'000, 'x') + " HTTP/1.1\r\nHost: localhost\r\n\r\n"),
+               Catch::StartsWith("HTTP/1.1 414 ") && Catch::Contains("\"title\":\"URI Too Long\""));
     CHECK_THAT(
         raw_exchange(port, "POST /api/v1/rehearsals HTTP/1.1\r\nHost: localhost\r\nContent-Length: 2000000\r\n\r\n"),
         Catch::StartsWith("HTTP/1.1 413") && Catch::Contains("262144"));
@@ -715,6 +733,7 @@ TEST_CASE("the console's files are served, and nothing outside its folder", "[ht
     RunningServer server;
     const auto port = server.port();
     CHECK(web_request(port, "GET", "/").status == 503);
+    CHECK(field(web_request(port, "GET", "/"), "Retry-After") == "10");
     CHECK_THAT(web_request(port, "GET", "/").body, Catch::Contains("not built"));
     const auto web = server.archive().parent_path() / "web";
     std::filesystem::create_directories(web / "assets");

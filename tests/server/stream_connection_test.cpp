@@ -268,7 +268,8 @@ TEST_CASE("one stream more than there are places is refused with 503, and who ha
     REQUIRE(first.open());
     REQUIRE(second->open());
     CHECK(StreamClient{events.port(), "aeolis.v1.json"}.status() == 503);
-    CHECK_THAT(raw_exchange(events.port(), upgrade), Catch::Contains("2 streams are open already"));
+    CHECK_THAT(raw_exchange(events.port(), upgrade),
+               Catch::Contains("2 streams are open already") && Catch::Contains("\r\nRetry-After: 1\r\n"));
     CHECK(answers());
     second.reset();
     for (int i = 0; i < 3000 && events.clients() != 1; ++i) std::this_thread::sleep_for(10ms);
