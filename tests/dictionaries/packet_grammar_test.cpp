@@ -168,8 +168,7 @@ TEST_CASE("what XTCE has and only describes is no finding, nor what is said of i
                 "</StaticAlarmRanges></DefaultAlarm></IntegerParameterType>",
             described + "<ParameterProperties dataSource='telemetered' readOnly='false' persistence='true'>"
                         "<SystemName>s</SystemName><PhysicalAddressSet/></ParameterProperties>",
-            entry("shortDescription='s'", "<AncillaryDataSet/>"),
-            described + "<DefaultRateInStream minimumValue='1'/>",
+            entry("shortDescription='s'", "<AncillaryDataSet/>"), described + "<DefaultRateInStream minimumValue='1'/>",
             "shortDescription='s' abstract='false' idlePattern='0x0' xmlns:y='urn:other' y:any='1'")
             .empty());
     CHECK(
