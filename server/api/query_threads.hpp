@@ -48,7 +48,7 @@ struct Asker {
 ///          jobs of priority `soon`, so that a thousand clients catching up delay nobody's query
 class QueryThreads {
   public:
-    static constexpr std::size_t question_threads = 10;  ///< chosen: each holds a connection of 2 MB and more
+    static constexpr std::size_t question_threads = 6;  ///< chosen: each holds a connection of some MB and a list
     static constexpr std::size_t threads = question_threads + 1;
     static constexpr std::size_t running_max = 2;          ///< chosen: of question threads at a time; others are paused
     static constexpr std::size_t of_client_max = 2;        ///< chosen: question threads for one client's queries
