@@ -19,9 +19,9 @@ struct TimeKernels {
 /// The UTC instant of a packet's time, where known.
 ///
 /// A spacecraft's clock (no epoch) needs both kernels, UNIX nothing, other epochs the leap seconds: GPS, TAI, J2000
-/// (2000-01-01T12:00:00 TT [naif-time]) and dates, "2000-01-01" or "2000-01-01T12:00:00". XTCE does not say of what scale
-/// a date is: taken as UTC, and the seconds since it as elapsed ones, leap seconds included; 1970-01-01 as UNIX and
-/// 1958-01-01 as TAI. None for other epochs, and outside the kernels' range.
+/// (2000-01-01T12:00:00 TT [naif-time]) and dates, "2000-01-01" or "2000-01-01T12:00:00". XTCE does not say of what
+/// scale a date is: taken as UTC, and the seconds since it as elapsed ones, leap seconds included; 1970-01-01 as UNIX
+/// and 1958-01-01 as TAI. None for other epochs, and outside the kernels' range.
 std::optional<UtcInstant> scet_of(const PacketTime& time, const TimeKernels& kernels);
 
 /// The instant in day-of-year form, else the seconds as a number, with "s after" and the epoch where that is J2000, a

@@ -27,8 +27,8 @@ class ModelParts {
     Condition condition(const std::string& scope, pugi::xml_node parent) const;
     /// Reads the child of `parent`: FixedValue, Fixed, DynamicValue or DiscreteLookupList.
     Amount amount(const std::string& scope, pugi::xml_node parent) const;
-    /// Whether the bits and octets of an encoding come the most significant first. Else a finding that says what becomes
-    /// of them.
+    /// Whether the bits and octets of an encoding come the most significant first. Else a finding that says what
+    /// becomes of them.
     bool has_usual_order(pugi::xml_node encoding, const std::string& otherwise) const;
 
     const Symbols& symbols;

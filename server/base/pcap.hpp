@@ -17,8 +17,8 @@ namespace aeolis::server {
 /// Files of captured packets, as tcpdump, tshark and Wireshark write and read them.
 ///
 /// Written  pcap, link type 101 (raw IP): each piece of octets as a UDP datagram over IPv4, from 192.0.2.1 to
-///          192.0.2.2, with the UTC time of its reception to the microsecond. Datagrams are sent from the port that they
-///          are sent to, pieces of a stream from stream_port. `tshark -d udp.port==4200,ccsds` reads space packets
+///          192.0.2.2, with the UTC time of its reception to the microsecond. Datagrams are sent from the port that
+///          they are sent to, pieces of a stream from stream_port. `tshark -d udp.port==4200,ccsds` reads space packets
 /// Read     pcap and pcapng, either order of octets, any resolution of time; link types 101, 12 and 228 (IPv4), 1
 ///          (Ethernet, with VLAN tags), 113 and 276 (Linux cooked). The data of UDP over IPv4; all else is counted
 namespace pcap {
@@ -28,8 +28,8 @@ inline constexpr std::uint16_t stream_port = 4199;  ///< chosen: pieces of a str
 inline constexpr std::size_t datagram_octets_max = 65507;
 
 std::string head();
-/// Appends `octets` as records; more than a datagram holds become several. `stream`: they are a piece of a stream, which
-/// their port of origin says.
+/// Appends `octets` as records; more than a datagram holds become several. `stream`: they are a piece of a stream,
+/// which their port of origin says.
 void append(std::string& to, Ert ert, std::uint16_t port, std::span<const std::uint8_t> octets, bool stream = false);
 
 struct Datagram {

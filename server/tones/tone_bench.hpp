@@ -79,8 +79,8 @@ LandingTones landing_tones(const FlownSignal& nominal, const simulation::Scenari
                            const dictionary::Dictionary& dictionary, double total_c_n0_dbhz, double rate_hz,
                            std::uint64_t seed);
 
-/// Runs of 90 s in which the carrier steps by 60 to 250 Hz, as when a parachute opens, and then swings by 5 to 40 Hz, 0.5
-/// to 2 times a second, fading over 10 to 30 s. Ranges and goal are required ones.
+/// Runs of 90 s in which the carrier steps by 60 to 250 Hz, as when a parachute opens, and then swings by 5 to 40 Hz,
+/// 0.5 to 2 times a second, fading over 10 to 30 s. Ranges and goal are required ones.
 struct SwingCount {
     std::uint64_t runs = 0, sent = 0, decoded = 0;
     std::uint64_t wrong = 0;  ///< another tone than was sent, or one where none was

@@ -141,8 +141,8 @@ const std::vector<std::string>& simulator_folders() {
     return names;
 }
 
-/// The layers of server/, lowest first, each with those right below it: the table in docs/architecture.md, which has the
-/// order of server/CMakeLists.txt. A layer reaches these, what they reach, and nothing else.
+/// The layers of server/, lowest first, each with those right below it: the table in docs/architecture.md, which has
+/// the order of server/CMakeLists.txt. A layer reaches these, what they reach, and nothing else.
 const std::vector<std::pair<std::string, std::vector<std::string>>>& layers() {
     static const auto of_the_table = [] {
         static const std::regex row{R"(^\| `(\w+)/` \|([\w, ]*)\| [^|]+\|$)"}, name{R"(\w+)"};

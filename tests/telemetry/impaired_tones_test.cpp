@@ -198,8 +198,8 @@ TEST_CASE("over all kinds and levels of spoiled samples no tone is wrong, and li
     }
 }
 
-/// A landing's carrier that steps by 60 to 250 Hz as a parachute opens, and swings under it by 5 to 40 Hz, 0.5 to 2 times
-/// a second.
+/// A landing's carrier that steps by 60 to 250 Hz as a parachute opens, and swings under it by 5 to 40 Hz, 0.5 to 2
+/// times a second.
 Signal swinging(std::uint64_t seed) {
     std::mt19937_64 random{seed * 7919 + 3};
     const auto between = [&](double least, double most) {
