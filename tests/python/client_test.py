@@ -284,7 +284,8 @@ class InProgress(unittest.TestCase):
                 leaves_us = state.clocks.ert_us + 600_000_000
                 at = datetime(2000, 1, 1, 12) + timedelta(microseconds=leaves_us)
                 arrives = at + timedelta(seconds=state.light_time_s)
-                for release_at in (at, at.isoformat() + "+00:00", "ert:" + at.isoformat(), "scet:" + arrives.isoformat()):
+                forms = (at, at.isoformat() + "+00:00", "ert:" + at.isoformat(), "scet:" + arrives.isoformat())
+                for release_at in forms:
                     reply = await aeolis.command("NO_OP", run=run, dry_run=True, release_at=release_at)
                     self.assertAlmostEqual(reply.leaves_us, leaves_us, delta=2)
 

@@ -60,7 +60,8 @@ const MINOR = new Set(['held', 'chosen', 'dropped']);
 
 const SAME_MOMENT_S = 1 / 16; // chosen: an explanation and its event leave within a few cycles
 
-const SAME_NEWS_S = 1; // chosen: the banner says since when in the event's own time, rounded by the correlation of clocks
+// Chosen: the banner says since when in the event's own time, rounded by the correlation of clocks.
+const SAME_NEWS_S = 1;
 
 /**
  * The newest `most` of the matching lines. An explanation is shown with its event of the same moment, else on a line of

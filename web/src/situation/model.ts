@@ -46,8 +46,8 @@ export const LOOKS: Record<Rank, Status> = {
   lasting: 'caution',
 };
 /**
- * A touchdown and its recording are good news; a link that is silent is silent, however calm that leaves people. What is
- * an alarm in the header is one here: a link or the station lost, the backup in charge.
+ * A touchdown and its recording are good news; a link that is silent is silent, however calm that leaves people.
+ * What is an alarm in the header is one here: a link or the station lost, the backup in charge.
  */
 export function lookOf({ rank, subject, sentence }: Pick<Line, 'rank' | 'subject' | 'sentence'>): Status {
   if (rank === 'news' && (subject === 'landed' || subject === 'recording')) return 'holds';

@@ -35,7 +35,7 @@ function lookNow(run = shownRun()): Look | undefined {
   const words = dictionary.value;
   return run && words && { run, words, plan: timepoints.value, cutoff: cutoff.value, lost: isLost.value };
 }
-/** Follows the numbers beside it, five times a second: attitudes come twice a second, and what lies between is eased. */
+/** Follows the numbers beside it, five times a second. Attitudes come twice a second; what lies between is eased. */
 const keyNow = () => {
   const run = shownRun();
   return `${run?.id} ${tick.peek()} ${cutoff.value} ${isLost.value} ${timepoints.value.length} ${asHeard.value}`;
