@@ -20,7 +20,7 @@ const SHOWN = {
   tones: /Last tone, E\+\d+:\d\d/,
   plots: /Altitude[^]*\d km[^]*Deceleration[^]*\d g/,
   events: /The EDL recording is closed/,
-  waiting: /This run: touchdown\. The recording is complete\./,
+  waiting: /Outcome: touchdown\. The recording is complete\./,
   commands: /EDL_DO_EDL #2[^]*EDL_SET_PARAMETERS #1/,
   channels: /altitude_m, descent stage\s+-?\d/,
   alarms: /no alarm/, // a landing without a fault raises none

@@ -70,9 +70,9 @@ TEST_CASE("each broken rule of the spreadsheets gives one line, and nothing is l
         {"named spare", "tones.csv", "\n255,spare,,", "\n255,spare,left_over,", "a spare tone has no name", 1},
         // parameters
         // the waveform
-        {"number of the waveform unknown", "mfsk.csv", "source\n", "source\nmfsk_hz,1,Hz,Text,[ours]\n",
+        {"number of the waveform unknown", "mfsk.csv", "source\n", "source\nmfsk_hz,1,Hz,Text,[chosen]\n",
          "is none that the waveform has", 1},
-        {"number of the waveform twice", "mfsk.csv", "source\n", "source\nsymbol_s,10,s,Text,[ours]\n",
+        {"number of the waveform twice", "mfsk.csv", "source\n", "source\nsymbol_s,10,s,Text,[chosen]\n",
          "is there twice", 5},
         {"number of the waveform missing", "mfsk.csv", "symbol_s,10,s,A tone lasts this long,[facts]\n", "",
          "there is no symbol_s", -4},
@@ -123,7 +123,7 @@ TEST_CASE("each broken rule of the spreadsheets gives one line, and nothing is l
          "only an anchor can be given"},
         {"a timepoint ensured", "constraints.csv", "ensured,engine_priming:triggered,backshell:anchor,",
          "ensured,engine_priming:triggered,backshell_separation,", "only an anchor can be given"},
-        {"no source of a constraint", "constraints.csv", "uhf_start,20,undefined,[ours],", "uhf_start,20,undefined,,",
+        {"no source of a constraint", "constraints.csv", "uhf_start,20,undefined,[chosen],", "uhf_start,20,undefined,,",
          "source is empty"},
         // the sheet itself
         {"ragged row", "parameters.csv", "guidance_gain,5,", "guidance_gain,5,5,", "the row has 9 cells, the header 8"},
@@ -182,10 +182,10 @@ TEST_CASE("constraints are read as moments of timepoints and anchors", "[diction
     std::vector<dictionary::Finding> all;
     dictionary::Findings findings{"constraints.csv", all};
     const auto rows = dictionary::read_constraints("kind,from,to,minimum_s,maximum_s,source,note\n"
-                                                   "required,ready,jump,0.5,undefined,[ours],\n"
-                                                   "given,do_edl,jump:anchor,undefined,-2,[ours],early\n"
-                                                   "required,jump:triggered,jump:fired,0,1,[ours],\n"
-                                                   "ensured,ready:triggered,jump:anchor,3,undefined,[ours],\n",
+                                                   "required,ready,jump,0.5,undefined,[chosen],\n"
+                                                   "given,do_edl,jump:anchor,undefined,-2,[chosen],early\n"
+                                                   "required,jump:triggered,jump:fired,0,1,[chosen],\n"
+                                                   "ensured,ready:triggered,jump:anchor,3,undefined,[chosen],\n",
                                                    {&timeline, &anchors}, findings);
     REQUIRE(all.empty());
     REQUIRE(rows->size() == 4);

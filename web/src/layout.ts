@@ -85,7 +85,7 @@ export const LAYOUT = {
   noteMarks: [
     /\s*\([^()]*\b[HML]\b[^()]*\)/g,
     /^OD137\b.*$|[;:]\s*OD137 .*$/,
-    /^ours\b:?\s*|(^|[;,.]?\s+)(time |spacing )?ours\b/gi,
+    /^chosen\b:?\s*|(^|[;,.]?\s+)(time |spacing )?chosen\b/gi,
   ],
   /**
    * The comparison that the vehicle makes for a timepoint, shown until flight itself explains what holds it. `bound` is
@@ -167,6 +167,8 @@ export const LAYOUT = {
     sufr: 'straighten up and fly right (SUFR)',
     sufr_start: 'straighten up and fly right',
     x_band_tones: 'X-band tones',
+    uhf_start: 'UHF start',
+    uhf_stop: 'UHF stop',
   },
   /** What a name of the vehicle's own reports is elsewhere, so that nobody takes them for two things. */
   alsoCalled: { name: 'Second Chance', is: 'backup computer' },

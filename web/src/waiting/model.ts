@@ -194,10 +194,12 @@ export function waitingFor(
   const moment = momentsOf(store, plan, cutoff).find((each) => !each.done && each.before === main.name);
   const named = plan.slice(plan.indexOf(main) + 1).find((row) => isImportant(row.name));
   const now = Math.min(store.seenSclk, cutoff);
+  const title = `${main.plannedES === undefined ? 'Waiting for' : 'Next:'} ${inWords(main.name)}`;
+  const note = noteWords(main.note);
   return {
     kind: 'waiting',
-    title: `${main.plannedES === undefined ? 'Waiting for' : 'Next:'} ${inWords(main.name)}`,
-    words: noteWords(main.note),
+    title,
+    words: repeats(title, note) ? '' : note,
     lines: conditions(store, dictionary, plan, main, cutoff, predicted),
     ...(moment?.e_s !== undefined && {
       before: {
@@ -247,6 +249,10 @@ function recordingDown(
   };
 }
 
+/** Whether a note says no more than the title: "GNC: straighten up and fly right." */
+const repeats = (title: string, note: string): boolean =>
+  title.toLowerCase().includes(note.toLowerCase().replace(/^\w+: |\.$/g, ''));
+
 /** A note of the plan as a sentence, without marks. */
 export function noteWords(note: string): string {
   const words = LAYOUT.noteMarks.reduce((text, mark) => text.replace(mark, ''), note).trim();
@@ -270,7 +276,7 @@ function ended(store: RunStore): Waiting {
   return {
     kind: 'ended',
     title: run.outcome === 'touchdown' ? landedTitle() : run.state === 'interrupted' ? 'Interrupted' : 'Ended',
-    words: `${lost}This run: ${outcomeWords(run.outcome, run.state)}. ${run.state !== 'interrupted' ? complete : canContinue(run) ? 'The server stopped in mid-run; the panel Runs continues it from here.' : 'It cannot be continued: what is followed after it is another run.'}`,
+    words: `${lost}Outcome: ${outcomeWords(run.outcome, run.state)}. ${run.state !== 'interrupted' ? complete : canContinue(run) ? 'The server stopped in mid-run; the panel Runs continues it from here.' : 'It cannot be continued: what is followed after it is another run.'}`,
     lines: [],
   };
 }

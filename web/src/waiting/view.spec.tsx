@@ -61,12 +61,9 @@ describe('waiting for', () => {
     };
     expect(['Tone only (L)', 'GNC says when.', ''].map(words)).toEqual(['Tone only.', 'GNC says when.', '']);
     expect(noteWords('Cables are cut before it (order H; time L)')).toBe('Cables are cut before it.');
-    expect(['Ours (L)', 'Ours (L): armed already', 'Its last use; time ours (L)', 'OD137 (H)'].map(noteWords)).toEqual([
-      '',
-      'Armed already.',
-      'Its last use.',
-      '',
-    ]);
+    expect(
+      ['Chosen (L)', 'Chosen (L): armed already', 'Its last use; time chosen (L)', 'OD137 (H)'].map(noteWords),
+    ).toEqual(['', 'Armed already.', 'Its last use.', '']);
     expect(noteWords('By the clock (see the plan); 75 kg (M)')).toBe('By the clock (see the plan); 75 kg.');
   });
   it('asks for no command that the vehicle’s status still speaks against', () => {
@@ -493,7 +490,7 @@ describe('waiting for', () => {
     );
     expect(
       waitingFor(aStore([lost], aRun({ state: 'finished', outcome: 'touchdown' })), aDictionary, aPlan, Infinity).words,
-    ).toMatch(/^▲ Station was lost from E\+3:00 to E\+4:00: a fault on the ground\. This run: touchdown/);
+    ).toMatch(/^▲ Station was lost from E\+3:00 to E\+4:00: a fault on the ground\. Outcome: touchdown/);
     const cutOff = (venue: string) =>
       waitingFor(aStore([], aRun({ state: 'interrupted', venue })), aDictionary, aPlan, Infinity);
     expect([

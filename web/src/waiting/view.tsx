@@ -91,7 +91,7 @@ export function WaitingFor() {
       <h2 aria-live="polite" data-room={waiting.title}>
         <span>{waiting.type === undefined ? waiting.title : toDo(waiting.title)}</span>
       </h2>
-      <p>{waiting.words}</p>
+      {waiting.words !== '' && <p>{waiting.words}</p>}
       <ul>
         {waiting.lines.map((line) => {
           const look = held(isOld ? undefined : line.holds);
