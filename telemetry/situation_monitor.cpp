@@ -513,27 +513,34 @@ Entries SituationMonitor::at(Ert now) const {
 }
 
 void SituationMonitor::add_links(Entries& all, Ert now, bool not_heard) const {
-    bool station = false;
+    add_station(all);
     for (const auto& [name, link] : links_) {
-        if (link.up) continue;
-        if (link.station) {
-            if (!std::exchange(station, true))
-                all.push_back({SituationRank::news,
-                               std::string(station_fault),
-                               fmt::format("A fault on the ground: {} ({} silent since {})", fault_of(link.words),
-                                           title_of(name), when(link.since)),
-                               "the station",
-                               link.seq,
-                               link.since,
-                               {}});
-            continue;
-        }
+        if (link.up || link.station) continue;
         if (awaits_begin(link)) continue;
         if (link.lost_since)
             add_lost(all, name, link);
         else if (!not_heard && (is_live_telemetry(name) || name == x_band_link.name))
             add_silent(all, name, link, now);
     }
+}
+
+// One fault, however many links it silences: those that fell silent together are named together.
+void SituationMonitor::add_station(Entries& all) const {
+    const auto first = std::ranges::find_if(links_, [](const auto& link) { return link.second.station; });
+    if (first == links_.end()) return;
+    const LinkRow& link = first->second;
+    std::string titles;
+    for (const auto& [name, row] : links_)
+        if (row.station && when(row.since) == when(link.since)) titles += (titles.empty() ? "" : ", ") + title_of(name);
+    if (const auto comma = titles.rfind(", "); comma != std::string::npos) titles.replace(comma, 2, " and ");
+    all.push_back(
+        {SituationRank::news,
+         std::string(station_fault),
+         fmt::format("A fault on the ground: {} ({} silent since {})", fault_of(link.words), titles, when(link.since)),
+         "the station",
+         link.seq,
+         link.since,
+         {}});
 }
 
 // The timeline switches it on, and telemetry would have told that the timeline runs: that is said where "do EDL" is.

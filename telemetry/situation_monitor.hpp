@@ -144,6 +144,7 @@ class SituationMonitor {
 
     bool awaits_begin(const LinkRow& link) const;  ///< not heard because the timeline does not run
     void add_links(std::vector<SituationEntry>& all, Ert now, bool not_heard) const;
+    void add_station(std::vector<SituationEntry>& all) const;
     void add_lost(std::vector<SituationEntry>& all, const std::string& name, const LinkRow& link) const;
     void add_silent(std::vector<SituationEntry>& all, const std::string& name, const LinkRow& link, Ert now) const;
     std::string last_heard(std::size_t timepoint) const;  ///< of a known one, as evidence

@@ -220,6 +220,18 @@ TEST_CASE("a fault that the station knows is said, within a predicted silence to
     CHECK(ground.about("uhf_live", 71.0)->rank == Rank::silence);
 }
 
+TEST_CASE("links that fell silent together by the station's fault are named together, earlier silences not",
+          "[situation]") {
+    Ground ground;
+    ground.up(uhf_live_link, -100.0);
+    ground.up(x_band_link, -100.0);
+    ground.down(x_band_telemetry_link, -50.0, "switched off; nothing comes from the station", true);
+    ground.down(x_band_link, 180.0, "nothing comes from the station", true);
+    ground.down(uhf_live_link, 180.0, "nothing comes from the station", true);
+    CHECK(ground.about("station", 181.0)->sentence ==
+          "A fault on the ground: nothing comes from the station (UHF and X-band silent since E+3:00)");
+}
+
 TEST_CASE(
     "the backup's take-over is danger until touchdown, and a state that lasts; by tone its time is that of the tone",
     "[situation]") {
