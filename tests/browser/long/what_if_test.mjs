@@ -31,6 +31,24 @@ test('a landing is forked, goes on otherwise, is laid over the one that it was, 
   await shows('differences-channels', /E\+\d:\d\d\.\d/);
   assert.deepEqual(await findings(page, 'dark'), []);
 
+  // In the plots the run that it was forked from stands dashed, by its time from entry, and in a link.
+  const plot = page.locator('.panel-plot-altitude .plot');
+  const over = async () => Number(await plot.getAttribute('data-over'));
+  assert.equal(await over(), 0);
+  await page.getByTestId('over-plots').selectOption('1');
+  await waitFor(over, (samples) => samples > 100);
+  await waitFor(() => page.url(), /[?&]over=1\b/);
+  const { page: other, problems: others } = await open(page.url(), { width: 1440, height: 790 });
+  const again = other.locator('.panel-plot-altitude .plot');
+  await waitFor(
+    async () => Number(await again.getAttribute('data-over')),
+    (samples) => samples > 100,
+  );
+  assert.deepEqual(others, []);
+  await other.close();
+  await page.getByTestId('over-plots').selectOption('0');
+  await waitFor(over, (samples) => samples === 0);
+
   const form = page.getByTestId('forecast');
   await form.getByTestId('what-if-at').fill('E+6:00');
   await form.locator('input.seed').first().fill('2');

@@ -7,7 +7,7 @@ import { opened, queryOf } from '../run/address';
 import type { Picture } from '../run/address';
 import { cursor } from '../run/cursor';
 import { stream } from '../run/connection';
-import { asked, dictionary, lookAtPast, notify, pastRange, replay, store, withRecording } from '../run/shown';
+import { asked, dictionary, laidOver, lookAtPast, notify, pastRange, replay, store, withRecording } from '../run/shown';
 import type { RunStore } from '../run/store';
 import { fromEntry } from '../run/time';
 import { choice, look, zoomedTo } from '../run/window';
@@ -29,6 +29,7 @@ function shown(run: number): Picture {
     run,
     past: past && { ...past, recorded: withRecording.value },
     span: spanShown(),
+    over: laidOver.value,
   };
 }
 

@@ -3,6 +3,7 @@
 // silences and the moments that come.
 import type uPlot from 'uplot';
 import { TYPE } from '../design/type';
+import { PREDICTED } from '../design/status';
 import { palette } from '../draw/palette';
 import type { DictionaryChannel } from '../gen/aeolis/v1/run_pb';
 import { predictedAt, predictedVersion, windowWords, windowsOf } from '../prediction/model';
@@ -11,11 +12,14 @@ import { fromEntry } from '../run/time';
 import { isImportant, shortTitle } from '../timeline/model';
 import { predicted } from '../timeline/now';
 
+export { boundsOfOther, drawOther, samplesOfOther } from './second';
+
 const DASH = [2, 4]; // of the line; in pixels
 const EDGE_DASH = [4, 4];
 const RADIUS = 3.5;
 const TICK = 5;
 const FAINT = 0.75;
+const WORD_IN_HEAD_PX = 306; // within a panel of 330, below which style.css leaves the word out of the head
 
 export interface PredictedLine {
   channel: DictionaryChannel;
@@ -45,6 +49,13 @@ export function predictedBounds(
 /** The number of predicted samples after now, for observers that cannot see a canvas. */
 export const samplesAhead = ({ series, entry_sclk, now_e_s }: PredictedLine, to_e_s: number): number =>
   Math.max(0, series.firstAfter(entry_sclk + to_e_s) - series.firstAfter(entry_sclk + now_e_s));
+
+/** Left, right and row of a name that stands in the plot. */
+interface Taken {
+  from: number;
+  to: number;
+  y: number;
+}
 
 /** The predicted line as it was drawn, with the ends of both axes at that time. */
 interface Kept {
@@ -102,7 +113,12 @@ function pictureOf(plot: uPlot, line: PredictedLine, x: [number, number], y: [nu
 }
 
 /** Draws the predicted line, and a hollow dot on it for now; of a difference the line is zero. */
-export function drawPredictedLine(plot: uPlot, line: PredictedLine, isDifference: boolean): void {
+export function drawPredictedLine(
+  plot: uPlot,
+  line: PredictedLine,
+  isDifference: boolean,
+  taken: readonly Taken[],
+): void {
   const { ctx } = plot;
   const { left, top, width, height } = plot.bbox;
   const { min: from, max: to } = plot.scales.x ?? {};
@@ -136,19 +152,45 @@ export function drawPredictedLine(plot: uPlot, line: PredictedLine, isDifference
     ctx.beginPath();
     ctx.arc(x(now_e_s), y(now / per), RADIUS * ratio, 0, 7);
     ctx.stroke();
+    if (plot.width < WORD_IN_HEAD_PX) nameDot(plot, x(now_e_s), y(now / per), taken);
   }
   ctx.restore();
+}
+
+/** The word of the hollow dot where the plot's head has no room for it: beside it, a line below or above. */
+function nameDot(plot: uPlot, x: number, y: number, taken: readonly Taken[]): void {
+  const { ctx } = plot;
+  const { left, top, width, height } = plot.bbox;
+  const ratio = window.devicePixelRatio || 1;
+  const colours = palette();
+  ctx.font = `${TYPE.mark * ratio}px ${colours.sans}`;
+  const wide = ctx.measureText(PREDICTED.word).width;
+  const away = (RADIUS + 4) * ratio;
+  const isRight = x + away + wide <= left + width;
+  if (!isRight && x - away - wide < left) return;
+  const line = TYPE.mark * ratio;
+  const from = isRight ? x + away : x - away - wide;
+  const isFree = (at: number) =>
+    at - line / 2 >= top + (TICK + 1) * ratio + line && // below the name of what comes next
+    at + line / 2 <= top + height &&
+    !taken.some((name) => name.from < from + wide && name.to > from && Math.abs(name.y - line / 2 - at) < line);
+  const row = [y + line, y - line, y + 2 * line, y - 2 * line].find(isFree);
+  if (row === undefined) return;
+  ctx.textAlign = isRight ? 'left' : 'right';
+  ctx.textBaseline = 'middle';
+  ctx.strokeStyle = colours.panel; // an outline against the lines behind it
+  ctx.lineWidth = 3 * ratio;
+  ctx.lineJoin = 'round';
+  ctx.strokeText(PREDICTED.word, isRight ? x + away : x - away, row);
+  ctx.fillStyle = colours.dim;
+  ctx.fillText(PREDICTED.word, isRight ? x + away : x - away, row);
 }
 
 /**
  * Draws what is predicted after now: silences of UHF as hollow boxes, and ticks for moments. The next one is named, where
  * no limit has its name: `taken`, left, right and row of each.
  */
-export function drawAhead(
-  plot: uPlot,
-  now_e_s: number,
-  taken: readonly { from: number; to: number; y: number }[],
-): void {
+export function drawAhead(plot: uPlot, now_e_s: number, taken: readonly Taken[]): void {
   const { ctx } = plot;
   const { left, top, width, height } = plot.bbox;
   const [right, bottom] = [left + width, top + height];

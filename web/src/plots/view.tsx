@@ -17,7 +17,7 @@ import { cursor } from '../run/cursor';
 import { inWords, numberText, valueText } from '../run/dictionary';
 import { isWorst, limitsOver } from '../run/limits';
 import { isLost } from '../run/connection';
-import { cutoff, dictionary, notify, plots, shownRun, tick } from '../run/shown';
+import { cutoff, dictionary, laidOver, notify, plots, shownRun, tick } from '../run/shown';
 import type { Series } from '../run/series';
 import type { RunStore } from '../run/store';
 import { fromEntry } from '../run/time';
@@ -63,7 +63,7 @@ const wideOf = (plot: uPlot): number => plot.width - Y_AXIS_PX - RIGHT_PX;
 let drawing: typeof import('./predicted') | undefined;
 let isLoading = false;
 function loadDrawing(): void {
-  if (isLoading || !isPredicted()) return;
+  if (isLoading || !(isPredicted() || laidOver.value)) return;
   isLoading = true;
   import('./predicted').then(
     (loaded) => {
@@ -104,7 +104,8 @@ function drawPredicted(plot: uPlot, channel: DictionaryChannel, per: number): vo
   const line = lineOf(channel, per);
   const names = limitNames.get(plot) ?? [];
   if (isAhead()) drawing?.drawAhead(plot, nowOf(), names);
-  if (line) drawing?.drawPredictedLine(plot, line, showsDifference(channel));
+  if (line) drawing?.drawPredictedLine(plot, line, showsDifference(channel), names);
+  if (!showsDifference(channel)) drawing?.drawOther(plot, channel, per);
   const { ctx } = plot;
   const ratio = window.devicePixelRatio || 1;
   ctx.save();
@@ -338,7 +339,7 @@ function Plot(properties: Properties) {
       const silences = changes.reduce((all, each) => all + each.length, 0);
       // a present silence grows with the clock, without new samples
       const silent = changes.every((each) => each.at(-1)?.fact.up !== true) ? run?.seenSclk.toFixed(0) : '';
-      const key = `${run?.id} ${silences} ${silent} ${recorded?.version} ${live?.version} ${span.from.toFixed(1)} ${span.to.toFixed(1)} ${cutoff.value} ${width} ${height} ${newShape} ${overVersions(run, over)} ${line ? `${predictedVersion.value} ${line.now_e_s.toFixed(1)}` : ''} ${isPredicted()} ${isDifference} ${predicted.value.length} ${limitsOver(
+      const key = `${run?.id} ${silences} ${silent} ${recorded?.version} ${live?.version} ${span.from.toFixed(1)} ${span.to.toFixed(1)} ${cutoff.value} ${width} ${height} ${newShape} ${overVersions(run, over)} ${predictedVersion.value} ${laidOver.value} ${line?.now_e_s.toFixed(1)} ${isPredicted()} ${isDifference} ${predicted.value.length} ${limitsOver(
         channel,
         -Infinity,
         Infinity,
@@ -375,6 +376,7 @@ function Plot(properties: Properties) {
           isDifference && line && run ? less(observed, channel, line.series, run.entrySclk, per, line.gap_s) : observed;
         element.dataset.holes = String(holesOf(data));
         element.dataset.predicted = String((line && drawing?.samplesAhead(line, span.to)) ?? 0);
+        element.dataset.over = String(drawing?.samplesOfOther(channel, span.from, span.to) ?? 0);
         element.dataset.newest = String(Math.max(recorded?.newestSclk ?? -Infinity, live?.newestSclk ?? -Infinity));
         plot.batch(() => {
           plot?.setData(data as uPlot.AlignedData, false);
@@ -385,6 +387,7 @@ function Plot(properties: Properties) {
               ? [0, 0]
               : [
                   ...((line && drawing?.predictedBounds(line, span.from, span.to)) ?? []),
+                  ...(drawing?.boundsOfOther(channel, per, span.from, span.to) ?? []),
                   ...(run ? extremes(run, over, channel.unit, span).map((each) => each / per) : []),
                 ],
             linear_below,

@@ -8,7 +8,7 @@ import { outcomeWords } from '../clocks/model';
 import { wordsFor } from '../run/api';
 import { isReal } from '../mode/model';
 import { change, read } from '../run/connection';
-import { pastRange, runs, store, tick } from '../run/shown';
+import { laidOver, pastRange, runs, store, tick } from '../run/shown';
 import { isGoing } from '../run/start';
 import type { RunStore } from '../run/store';
 import { fromEntry, readFromEntry } from '../run/time';
@@ -232,6 +232,28 @@ function DifferencesOf({ run, of }: { run: RunStore; of: Differences }) {
         </table>
       )}
     </div>
+  );
+}
+
+/** Another run in the plots, under what is shown. */
+function InPlots({ run }: { run: RunStore }) {
+  const others = runs.value.filter((each) => Number(each.run) !== run.id && !isGoing(each));
+  if (others.length === 0) return null;
+  return (
+    <label class="table-tools">
+      in the plots, dashed{' '}
+      <select
+        data-testid="over-plots"
+        onChange={(event) => (laidOver.value = Number(event.currentTarget.value) || undefined)}
+      >
+        <option value="0">no other run</option>
+        {others.map((each) => (
+          <option key={String(each.run)} value={String(each.run)} selected={Number(each.run) === laidOver.value}>
+            run {String(each.run)}, {each.scenario}
+          </option>
+        ))}
+      </select>
+    </label>
   );
 }
 
@@ -476,6 +498,7 @@ export function WhatIf() {
         </section>
         <section>
           <h3>Laid over another run</h3>
+          <InPlots run={run} />
           <Compare run={run} />
         </section>
       </div>

@@ -27,6 +27,7 @@ function anyPicture(random: () => number): Picture {
     past: maybe(() => ({ ...span(), recorded: random() < 0.5 })),
     span: maybe(() => pick<Picture['span']>('run', 'minute', span())),
     cursor: maybe(seconds),
+    over: maybe(() => pick(1, 987654321)),
     panel: maybe(name),
     full: maybe(name),
     data: maybe(name),

@@ -31,6 +31,8 @@ export interface Picture extends View {
   span?: 'run' | 'minute' | Span | undefined;
   /** The instant that the cursor points at. */
   cursor?: number | undefined;
+  /** The run that is laid over the plots. */
+  over?: number | undefined;
 }
 
 const WORDS = ['panel', 'full', 'data', 'middle', 'low'] as const;
@@ -39,13 +41,14 @@ const spanText = ({ from, to }: Span) => `${from},${to}`;
 
 /** The query of the address, without "?". Names as they are; of the rest only what differs from how the console comes. */
 export function queryOf(picture: Partial<Picture>): string {
-  const { run, past, span, plots, cursor } = picture;
+  const { run, past, span, plots, cursor, over } = picture;
   const parts: [string, string | undefined][] = [
     ['run', run ? String(run) : undefined],
     ['past', past && spanText(past)],
     ['with', past?.recorded ? 'recording' : undefined],
     ['span', typeof span === 'object' ? spanText(span) : span],
     ['at', cursor === undefined ? undefined : String(cursor)],
+    ['over', over ? String(over) : undefined],
     ...WORDS.map((word): [string, string | undefined] => [word, picture[word]]),
     ['channels', plots?.map((names) => names.join(' ')).join(',')],
   ];
@@ -78,7 +81,11 @@ export function pictureOf(query: string): { picture: Picture; problems: string[]
     if (text !== null && value === undefined) problems.push(`${name}=${text.slice(0, 40)} in the address is ${what}`);
     return value;
   };
-  picture.run = part('run', 'no number of a run', (text) => (/^\d{1,9}$/.test(text) ? Number(text) : undefined)) ?? 0;
+  const numberOf = (name: string) =>
+    part(name, 'no number of a run', (text) => (/^\d{1,9}$/.test(text) ? Number(text) : undefined));
+  picture.run = numberOf('run') ?? 0;
+  const over = numberOf('over');
+  if (over) picture.over = over;
   const past = part('past', 'no range in seconds from entry', readSpan);
   if (past) picture.past = { ...past, recorded: asked.get('with') === 'recording' };
   const span = part('span', 'no stretch of time', (text) =>

@@ -98,6 +98,8 @@ export function lookAtPast(range: { from: number; to: number }, recorded: boolea
 
 /** The plots from top to bottom, each with the channels that share it; undefined: those of the layout. */
 export const plots = signal(opened.picture.plots);
+/** Another run, laid over the plots. */
+export const laidOver = signal(opened.picture.over);
 
 /** Channels that are plotted over time; their history has more points. */
 export function plottedChannels(): string[] {
