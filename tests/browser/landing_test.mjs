@@ -2,9 +2,27 @@
 // A newcomer lands a spacecraft with the keyboard alone, reloads, and asks for a recorded range.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { flyTo, focused, setPace as pace, stageLook as stage, waitFor, workplace } from './support.mjs';
+import { comesToRest, flyTo, focused, setPace as pace, stageLook as stage, waitFor, workplace } from './support.mjs';
 
 const { open, serve } = workplace();
+
+/** In the page of an ended run: rows of the header, ways on that are beyond their card, and how its map is drawn. */
+function endOnLaptop() {
+  const tops = ['badge', 'stream-state'].map((id) =>
+    document.querySelector(`[data-testid="${id}"]`).getBoundingClientRect(),
+  );
+  const card = document.querySelector('.touchdown-box').getBoundingClientRect();
+  const beyond = [...document.querySelectorAll('.touchdown-links > *')]
+    .filter((each) => each.getBoundingClientRect().bottom > card.bottom + 1)
+    .map((each) => each.innerText);
+  const map = document.querySelector('.touchdown-map');
+  return {
+    rows: tops[1].top < tops[0].bottom ? 1 : 2,
+    beyond,
+    filled: getComputedStyle(map.querySelector('[data-testid="ellipse"]')).fill,
+    target: getComputedStyle(map.querySelector('.path-target')).stroke !== 'none',
+  };
+}
 
 test('two commands by keyboard land it; a reload has all of it; a range can be asked for', async (t) => {
   const server = await serve(t, 'landing', ['--scenario', 'nominal']);
@@ -45,6 +63,12 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
 
   await pace(page, 100);
   await shows('waiting', /Next: (pyros armed vent|coolant vent)/);
+  // The sentence has the name already, so that both have room at the size that is read at 3 m.
+  const countdown = page.getByTestId('situation-countdown');
+  await waitFor(
+    () => countdown.evaluate((each) => `${getComputedStyle(each).fontSize} ${each.innerText}`),
+    /^54px (in ≈ \d|is due)/,
+  );
   await shows('timepoints-fired', /^[1-9]/);
   await flyTo(server, 266);
   await shows('badge', /paused/);
@@ -84,6 +108,12 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
     },
     (settled) => settled === true,
   );
+  // On a laptop the end has one row of the header, all of its card and the ways on in sight, and no phase goes on.
+  await page.setViewportSize({ width: 1440, height: 790 });
+  await comesToRest(page);
+  assert.match(await text('phase-now'), /✓ Touchdown/);
+  assert.deepEqual(await page.evaluate(endOnLaptop), { rows: 1, beyond: [], filled: 'none', target: true });
+  await page.setViewportSize({ width: 1920, height: 1080 });
   const seen = {
     fired: await text('timepoints-fired'),
     through: await text('complete-through'),

@@ -51,7 +51,7 @@ async function play(scenario, moments) {
         await page.waitForTimeout(1500); // for what is asked after a resize, and a draw after it
         await page.screenshot({
           path: path.join(pictures, `${name}_${size.width}.png`),
-          animations: 'disabled',
+          animations: 'allow', // that of a list's foot follows its scroll
         });
       }
       await page.setViewportSize(SIZES[0]);

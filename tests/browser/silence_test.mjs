@@ -13,6 +13,7 @@ test('a replay shows what had been heard then; with the recording it shows what 
   const { page, text, shows } = await open(way.address);
   await shows('waiting', /Touchdown (reported|confirmed)/);
   await shows('stream-state', /connected/);
+  await shows('link-Relay', /recording complete/);
   await page.keyboard.press('y');
   await shows('reading-of-past', /As it was heard then/); // and 0.3 s, or two letters are a word
   await page.keyboard.press('p');
@@ -27,10 +28,14 @@ test('a replay shows what had been heard then; with the recording it shows what 
       (at) => at === e_s,
     );
   };
+  // It stands, and says of which stretch it shows which instant.
+  await shows('replay-bar', /REPLAY held\. Nothing here is live\./);
+  await shows('replay-bar', /at E.\d+:\d\d\s+E−20:00\s+E\+8:\d\d\s+leave/);
   // In the plasma blackout UHF brought nothing after E+0:43; the recording has all of it.
   await seek(80);
   const altitude = () => page.getByTestId('channel-altitude_m').innerText();
   await waitFor(altitude, /stale, 3\d\.\d s/);
+  assert.equal(await page.getByTestId('link-Relay').count(), 0, 'nobody had heard of it by then');
   await waitFor(() => page.getByTestId('channel-descent_rate_mps').innerText(), /\b3\d\.\d s/); // from the same packet
   const heard = Number.parseInt(await text('timepoints-fired'), 10);
   assert.equal(await page.locator('[data-event="PEAK_DECELERATION"]').count(), 0, 'only the recording told it');

@@ -119,7 +119,9 @@ const OWN = ['uhf_live', 'x_band_telemetry', 'x_band'];
 function radioLinks(store: RunStore, cutoff: number, lost: boolean): LinkLine[] {
   const names = [...store.links.keys()];
   const on = linksOf(store, cutoff, lost).map((line, i) => ({ link: names[i] ?? '', line }));
-  const shown = on.filter(({ link, line }) => !isOff(link, line));
+  // In a past view a link that nobody had heard of yet is not there, as it was not then.
+  const unheard = ({ look, silence }: LinkLine) => cutoff !== Infinity && look === 'unknown' && silence === undefined;
+  const shown = on.filter(({ link, line }) => !isOff(link, line) && !unheard(line));
   const all = shown.map(({ line }) => line);
   if (all.length <= FEW) return all;
   const [own, others] = [[] as LinkLine[], [] as LinkLine[]];

@@ -107,7 +107,7 @@ export function Header() {
       )}
       {send?.next && (
         <div class={`clock ${send.next.left_s < 60 ? 'late' : ''}`} data-testid="latest-send">
-          <small>latest to send before {inWords(send.next.name)}</small>
+          <small>latest to send before “{inWords(send.next.name)}”</small>
           <output>
             {send.next.at}, in {duration(send.next.left_s)}
           </output>

@@ -171,6 +171,7 @@ function drawPhases(surface: Surface, { x, y }: Scales): Box[] {
   const path = predictedNow();
   if (!words || path.length === 0) return taken;
   const steps = phaseSteps(shownRun(), words, timepoints.value, cutoff.value, predicted.value);
+  const way = wayOf(path.map((point) => [x(point.speed_mps), y(point.altitude_m)] as const));
   c.textBaseline = 'middle';
   const order = steps
     .map((step, index) => ({ step, index }))
@@ -195,11 +196,15 @@ function drawPhases(surface: Surface, { x, y }: Scales): Box[] {
             [Math.min(width - wide - RIGHT, px + 34), py + 24],
             [px - wide - 44, py + 8],
             [px + 34, py + 4],
+            [px + 34, py + 40],
+            [px - wide / 2, py - 34],
+            [px + 34, py - 34],
           ];
-    const place = places.find(
-      ([left, top]) =>
-        left > LEFT && top + 12 < height - BOTTOM && isFree([left, top - 12, left + wide, top + 12], taken),
+    const boxAt = ([left, top]: [number, number]): Box => [left, top - 12, left + wide, top + 12];
+    const free = places.filter(
+      (at) => at[0] > LEFT && at[1] + 12 < height - BOTTOM && at[1] > 24 && isFree(boxAt(at), taken),
     );
+    const place = free.find((at) => isClear(boxAt(at), way)) ?? free[0];
     if (place) {
       taken.push([place[0], place[1] - 12, place[0] + wide, place[1] + 12]);
       c.fillText(step.title, ...place);

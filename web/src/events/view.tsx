@@ -38,12 +38,12 @@ export function Events() {
           )}
           {alarms > 0 && (
             <b class="status-alarm">
-              {STATUS.alarm.shape} {alarms} {alarms === 1 ? 'alarm' : 'alarms'}
+              {STATUS.alarm.shape} {alarms} alarm {alarms === 1 ? 'event' : 'events'}
             </b>
           )}
           {warnings > 0 && (
             <b class={`warnings ${lines.some(({ level, alarm }) => !alarm && WORST.has(level)) ? 'status-alarm' : ''}`}>
-              ▲ {warnings} {warnings === 1 ? 'warning' : 'warnings'}
+              ▲ {warnings} warning {warnings === 1 ? 'event' : 'events'}
             </b>
           )}
           <input

@@ -7,6 +7,7 @@ import { LAYOUT } from '../layout';
 import { phaseSteps } from '../phases/model';
 import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
 import { heardOf } from '../timeline/heard';
+import { liveOutages } from '../timeline/model';
 import { cutoff, dictionary, modeNow, runNow, timepoints, withRecording } from '../run/shown';
 import type { Dictionary } from '../run/dictionary';
 import type { RunStore } from '../run/store';
@@ -194,14 +195,16 @@ export function guideStep(
             words:
               run.run.relayProgress > 0
                 ? `${Math.floor(run.run.relayProgress * 100)} % of the recording is down.`
-                : 'How much of the recording is down is not told.',
+                : 'Nothing of the recording has come yet.',
           },
         ]
       : pace > FAST
         ? [{ key: '−', words: 'to 10× or less, to see it happen' }]
         : amiss
           ? [{ key: 'm', words: 'opens the list, where more matters than the line says' }]
-          : [{ words: 'Watch the dot come down along the grey line, the predicted path.' }];
+          : isSilent(run, until)
+            ? [{ words: 'Watch the dashed ring: there it is predicted now.' }]
+            : [{ words: 'Watch the dot come down the grey line, the predicted path.' }];
   return {
     number: now <= 0 ? 3 : Math.min(GUIDE_STEPS - 1, now + 2),
     title: now <= 0 && !amiss ? 'Entry is near' : (phases[Math.max(now, 0)]?.title ?? ''),
@@ -210,6 +213,13 @@ export function guideStep(
     wants: !paused && !down && pace > FAST ? 'pace' : 'nothing',
   };
 }
+
+/** Whether all links are silent by which height and speed come. */
+const isSilent = (run: RunStore, until: number): boolean =>
+  liveOutages(run, Infinity, until).some(({ from, to }) => {
+    const now_e_s = Math.min(run.seenSclk, until) - run.entrySclk;
+    return from < now_e_s && now_e_s <= to;
+  });
 
 function afterwards(run: RunStore): GuideStep {
   const landed = run.run.outcome === 'touchdown';

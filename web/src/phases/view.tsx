@@ -20,6 +20,8 @@ export function Phases() {
   const plan = timepoints.value;
   const foreseen = run ? withSaid(predicted.value, saidOf(run, plan, cutoff.value)) : [];
   const steps = phaseSteps(run, dictionary.value, plan, cutoff.value, foreseen);
+  // The last phase of a landing that is over does not go on; of a past it does.
+  const isOver = cutoff.value === Infinity && run?.run.outcome === 'touchdown';
   const seen_e_s = run ? Math.min(run.seenSclk, cutoff.value) - run.entrySclk : NaN;
   return (
     <ol class="phases" data-testid="phases" aria-label="Phases of the landing">
@@ -31,7 +33,8 @@ export function Phases() {
           data-testid={step.state === 'now' ? 'phase-now' : undefined}
         >
           <b>
-            <span aria-hidden="true">{SHAPES[step.state]}</span> {isNamed(step) ? capital(step.detail) : step.title}
+            <span aria-hidden="true">{step.state === 'now' && isOver ? SHAPES.done : SHAPES[step.state]}</span>{' '}
+            {isNamed(step) ? capital(step.detail) : step.title}
           </b>
           <small>
             {step.state === 'now' ? (

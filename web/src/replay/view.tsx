@@ -37,7 +37,7 @@ export function ReplayBar() {
   return (
     <div class="replay-bar" role="region" aria-label="replay" data-testid="replay-bar">
       <b>
-        REPLAY {now.pace}×. Nothing here is live{run.going ? '; the run goes on' : ''}.
+        REPLAY {now.playing ? `${now.pace}×` : 'held'}. Nothing here is live{run.going ? '; the run goes on' : ''}.
       </b>
       <Reading />
       <button type="button" onClick={playOrHold} data-testid="replay-play" title="key p">
@@ -49,6 +49,8 @@ export function ReplayBar() {
       <button type="button" onClick={() => changeReplayPace(1)} aria-label="replay faster" title="key +">
         +
       </button>
+      <output>at {fromEntry(past.to)}</output>
+      <small>{fromEntry(from)}</small>
       <input
         type="range"
         aria-label="where the replay is, in seconds from entry"
@@ -59,9 +61,7 @@ export function ReplayBar() {
         aria-valuetext={fromEntry(past.to)}
         onInput={(event) => seek(Number(event.currentTarget.value))}
       />
-      <output>
-        {fromEntry(past.to)} of {fromEntry(to)}
-      </output>
+      <small>{fromEntry(to)}</small>
       <button type="button" onClick={backToLive}>
         leave <kbd>Esc</kbd>
       </button>

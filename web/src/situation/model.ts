@@ -23,6 +23,8 @@ export interface Line {
   evidence: string;
   since_e_s: number;
   countdown: string;
+  /** Whether the sentence ends with the name of what is awaited, which the countdown then leaves out. */
+  namesAwaited: boolean;
   /** Whether the reader can put it aside. */
   mayGo: boolean;
   aside: boolean;
@@ -86,6 +88,8 @@ export function situationOf(
   const lines = told
     .filter(({ rank }) => rank !== 'lasting')
     .map((entry): Line => {
+      const countdown = countdownWords(entry.awaited, e_s(entry.atUs), now_e_s, entry.overdue);
+      const namesAwaited = countdown !== '' && entry.sentence.endsWith(entry.awaited);
       const key = `${entry.rank} ${entry.subject} ${entry.evidenceSeq} ${entry.sentence}`;
       return {
         key,
@@ -94,7 +98,8 @@ export function situationOf(
         sentence: entry.sentence,
         evidence: entry.evidence,
         since_e_s: e_s(entry.sinceUs),
-        countdown: countdownWords(entry.awaited, e_s(entry.atUs), now_e_s, entry.overdue),
+        countdown: namesAwaited ? countdown.slice(entry.awaited.length + 1) : countdown,
+        namesAwaited,
         mayGo: entry.rank === 'news' || (entry.rank === 'danger' && stays.has(entry.subject)),
         aside: false,
       };
@@ -111,6 +116,7 @@ export function situationOf(
             evidence: '',
             since_e_s: NaN,
             countdown: '',
+            namesAwaited: false,
             mayGo: false,
             aside: false,
           },

@@ -10,8 +10,9 @@ import './style.css';
 
 /** Letters that have room in one line in the large size, at each width; more have the smaller one. */
 const ONE_LINE = 68;
-/** Letters of news that have room in the largest size beside what can be pressed. */
+/** Letters that have room in the largest size beside what can be pressed: of news, and of a wait beside its countdown, however long that is. */
 const NEWS = 48;
+const WAIT = 33;
 
 /** The evidence of an entry, which leads to its instant. */
 function Evidence({ line, words }: { line: Line; words: string }) {
@@ -64,8 +65,7 @@ export function Situation() {
   if (!run && !first) return null;
   // What is armed here has the large words.
   const isLong = first && (armedHere.value.length > 0 || first.sentence.length + first.countdown.length > ONE_LINE);
-  // What counts down keeps one size, however long the time is written.
-  const isNews = first && first.countdown === '' && first.sentence.length <= NEWS;
+  const isNews = first && first.sentence.length <= (first.countdown === '' ? NEWS : first.namesAwaited ? WAIT : 0);
   const size = isLong ? 'situation-long' : isNews ? 'situation-news' : '';
   const look = first ? lookOf(first) : 'never';
   const [next, waiting] = [more.find((line) => !line.aside), more.filter((line) => !line.aside).length];

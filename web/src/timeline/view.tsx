@@ -147,10 +147,13 @@ function drawTimeline({ context: c, width: width_px, height: height_px, colours 
           ? told
           : 'the recording comes down after landing';
     const wide = c.measureText(words).width;
+    // in the middle, or beside the line of now that would cross it
+    const middle = (GUTTER + width) / 2;
+    const at = Math.abs(now_px - middle) < wide / 2 + 8 ? now_px - wide / 2 - 14 : middle;
     c.fillStyle = colours.panel; // not struck through by the lane
-    c.fillRect((GUTTER + width - wide) / 2 - 6, y(RECORDING) - 8, wide + 12, 16);
+    c.fillRect(at - wide / 2 - 6, y(RECORDING) - 8, wide + 12, 16);
     c.fillStyle = colours.dim;
-    c.fillText(words, (GUTTER + width) / 2, y(RECORDING) - 0.5);
+    c.fillText(words, at, y(RECORDING) - 0.5);
   }
   marks(lanes.plan, x, y(0), (px, py) => ring(c, px, py, 3.2, colours.dim), true);
   const now_e_s = Math.min(run.seenE, pastRange.value?.to ?? Infinity);

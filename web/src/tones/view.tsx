@@ -31,6 +31,15 @@ const LOUDEST_DB = 30;
 const LABEL_PX = 12;
 const HEIGHTS = [64, 128, 256]; // the strip is only as high as the received tones need
 
+/** Each part of a line of evidence stands in one piece. */
+const unbroken = (evidence: string) =>
+  evidence.split(' · ').map((part, i) => (
+    <span key={i}>
+      {i > 0 && ' · '}
+      <span class="tone-part">{part}</span>
+    </span>
+  ));
+
 /** The selected symbol of the run; undefined: the newest. */
 const choice = signal<{ run: number; sclk: number } | undefined>(undefined);
 const chosenSclk = () => (choice.value?.run === shownRun()?.id ? choice.value?.sclk : undefined);
@@ -212,7 +221,7 @@ export function Tones() {
         )}
         {run?.entryKnown === false && !tone
           ? 'no tone comes over this link'
-          : toneEvidence(tone, run && toneSilence(run, cutoff.value))}
+          : unbroken(toneEvidence(tone, run && toneSilence(run, cutoff.value)))}
         {back && bestTones(tone) !== '' && ` · likeliest ${bestTones(tone)}`}
       </p>
       <div
