@@ -16,7 +16,7 @@ const TYPE_KB = 120;
 const SHOWN = {
   timeline: /(\d+) of \1 timepoints fired/,
   descent: /Touchdown confirmed[^]*3 of 3 signals/,
-  phases: /✓ Cruise[^]*▶ Touchdown/,
+  phases: /✓ Cruise[^]*✓ Touchdown/,
   tones: /Last tone, E\+\d+:\d\d/,
   plots: /Altitude[^]*\d km[^]*Deceleration[^]*\d g/,
   events: /The EDL recording is closed/,

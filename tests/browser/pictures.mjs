@@ -23,7 +23,7 @@ const server = await serve({ archive: path.join(folder, 'pictures.db'), more: ['
 const settled = async (shown) => {
   const words = (id) => shown.getByTestId(id).innerText();
   await waitFor(() => words('stream-state'), /connected[^]*complete through [1-9]/, 60_000);
-  await waitFor(() => words('phases'), /▶/, 60_000);
+  await waitFor(() => words('phases'), /▶|✓ Touchdown/, 60_000);
   await waitFor(
     () => shown.locator('body').innerText(),
     (all) => !/asking…|has not answered|connecting/.test(all),
@@ -133,7 +133,7 @@ try {
   await take('review.png', page.locator('main > .panel'));
 
   await page.goto(`${server.address}/?panel=packets`);
-  await shows('phases', /▶\s*Touchdown/, 60_000);
+  await shows('phases', /✓\s*Touchdown/, 60_000);
   await page.setViewportSize({ width: 1600, height: 760 });
   await page.getByRole('button', { name: 'GncNavigation', exact: true }).click();
   await page.keyboard.press('ArrowDown');

@@ -225,9 +225,9 @@ TEST_CASE("links that fell silent together by the station's fault are named toge
     Ground ground;
     ground.up(uhf_live_link, -100.0);
     ground.up(x_band_link, -100.0);
-    ground.down(x_band_telemetry_link, -50.0, "switched off; nothing comes from the station", true);
-    ground.down(x_band_link, 180.0, "nothing comes from the station", true);
-    ground.down(uhf_live_link, 180.0, "nothing comes from the station", true);
+    ground.down(x_band_telemetry_link, -50.0, "switched off: planned at E−12:30; nothing comes from the station", true);
+    ground.down(x_band_link, 180.0, "ground fault: nothing comes from the station", true);
+    ground.down(uhf_live_link, 180.0, "ground fault: nothing comes from the station", true);
     CHECK(ground.about("station", 181.0)->sentence ==
           "A fault on the ground: nothing comes from the station (UHF and X-band silent since E+3:00)");
 }

@@ -229,7 +229,7 @@ test('nothing in the header lies over another or is cut off, with alarms standin
 
 test('the strip of phases is as high before a phase is known as after, so that nothing below it moves', async () => {
   const { page, shows } = await open(server.address);
-  await shows('phases', /▶\s*Touchdown/);
+  await shows('phases', /✓\s*Touchdown/);
   for (const [width, height] of [
     [1366, 768],
     [1600, 900],

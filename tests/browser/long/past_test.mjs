@@ -28,7 +28,7 @@ test('a replay shows nothing of what came later, in every panel, and the way bac
   assert.ok(await page.getByTestId('command-line').isDisabled());
   await page.keyboard.press('Escape');
   await shows('badge', /ENDED RUN/);
-  await shows('phases', /▶\s*Touchdown/);
+  await shows('phases', /✓\s*Touchdown/);
   assert.deepEqual(problems, []);
   await page.close();
 });

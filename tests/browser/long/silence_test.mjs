@@ -47,9 +47,9 @@ test('with tones alone the next moment, the phase, the count and the details go 
 test('the latest instant to send is that of the next timepoint one can reach, by name, also after the first has fired', async (t) => {
   const server = await serve(t, 'latest', ['--scenario', 'nominal_auto']);
   const { page, problems, text, shows } = await open(server.address);
-  await shows('latest-send', /before pyros armed vent\s+E−13:48, in/);
+  await shows('latest-send', /before “pyros armed vent”\s+E−13:48, in/);
   await flyTo(server, -700);
-  await shows('latest-send', /before entry antenna\s+E−10:40, in/);
+  await shows('latest-send', /before “entry antenna”\s+E−10:40, in/);
   assert.match(await text('timepoints-fired'), /^[3-9] of/, 'timepoints have fired by then');
   assert.deepEqual(problems, []);
   await page.close();

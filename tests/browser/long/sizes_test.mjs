@@ -206,5 +206,14 @@ test('on paper a report is as wide as the paper, without what could be pressed',
   }));
   assert.ok(wide <= 702, `${wide} px`);
   assert.equal(seen, 0);
+  // The table of channels is whole, with the rows that are out of sight on a screen.
+  await page.emulateMedia({ media: 'screen' });
+  await page.goto(`${blackout.address}/?panel=channels`);
+  const last = page.locator('.channels tbody tr').last();
+  await last.waitFor({ state: 'attached' });
+  const isRendered = () => last.evaluate((row) => row.checkVisibility({ contentVisibilityAuto: true }));
+  assert.equal(await isRendered(), false, 'on a screen they are left out');
+  await page.emulateMedia({ media: 'print' });
+  assert.equal(await isRendered(), true);
   await page.close();
 });
