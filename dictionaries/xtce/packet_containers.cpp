@@ -9,7 +9,9 @@ namespace {
 
 class ContainerReader {
   public:
-    explicit ContainerReader(const ModelParts& parts) : parts_(parts) {
+    ContainerReader(const ModelParts& parts, const std::vector<PacketParameter>& parameters,
+                    const std::vector<PacketType>& types)
+        : parts_(parts), parameters_(parameters), types_(types) {
         for (const Symbol& symbol : parts.symbols.all())
             if (symbol.kind == Kind::container) containers_.emplace(symbol.path, containers_.size());
     }
@@ -82,6 +84,7 @@ class ContainerReader {
                 parts_.report.fault(element, "an entry for a member alone is not supported: packets are read up to it");
             entry.what = PacketEntry::What::parameter;
             entry.last_indices = read_last_indices(parts_, symbol.scope, element.child("DimensionList"));
+            if (index) check(element, types_[parameters_[*index].type], entry.last_indices.empty());
         } else if (name == "ContainerRefEntry") {
             index = index_of(symbol, element);
             entry.what = PacketEntry::What::container;
@@ -105,6 +108,21 @@ class ContainerReader {
         return entry;
     }
 
+    /// Names what a type lacks that only matters in a packet.
+    void check(pugi::xml_node element, const PacketType& type, bool is_sized_by_type) {
+        if (type.kind == PacketType::Kind::array && is_sized_by_type && type.last_indices.empty())
+            parts_.report.fault(element, "the dimensions of the array are told nowhere: packets are read up to it");
+        if (const PacketType* found = uncoded(type))
+            parts_.report.fault(element,
+                                "type " + in_quotes(found->name) + " has no data encoding: packets are read up to it");
+    }
+    const PacketType* uncoded(const PacketType& type) const {
+        if (type.kind == PacketType::Kind::array) return uncoded(types_[type.element]);
+        for (const auto& member : type.members)
+            if (const PacketType* found = uncoded(types_[member.type])) return found;
+        return type.uncoded ? &type : nullptr;
+    }
+
     void read_location(const Symbol& symbol, pugi::xml_node element, PacketEntry& entry) {
         const pugi::xml_node location = element.child("LocationInContainerInBits");
         if (!location) return;
@@ -120,13 +138,17 @@ class ContainerReader {
     }
 
     const ModelParts& parts_;
+    const std::vector<PacketParameter>& parameters_;
+    const std::vector<PacketType>& types_;
     std::map<std::string, std::size_t> containers_;
 };
 
 }  // namespace
 
-std::vector<PacketContainer> read_model_containers(const ModelParts& parts) {
-    ContainerReader reader{parts};
+std::vector<PacketContainer> read_model_containers(const ModelParts& parts,
+                                                   const std::vector<PacketParameter>& parameters,
+                                                   const std::vector<PacketType>& types) {
+    ContainerReader reader{parts, parameters, types};
     std::vector<PacketContainer> containers;
     for (const Symbol& symbol : parts.symbols.all())
         if (symbol.kind == Kind::container) containers.push_back(reader.read(symbol));

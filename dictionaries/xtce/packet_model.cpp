@@ -158,7 +158,7 @@ PacketModel read_model(const std::string& name, const ModelParts& parts, ModelTy
                 {name_of(symbol.element), symbol.path, types.of(symbol.scope, symbol.element, "parameterTypeRef"),
                  parts.condition(symbol.scope, symbol.element.child("ParameterProperties").child("ValidityCondition")),
                  parts.report.line(symbol.element)});
-    model.containers = read_model_containers(parts);
+    model.containers = read_model_containers(parts, model.parameters, types.types);
     model.types = std::move(types.types);
     return model;
 }

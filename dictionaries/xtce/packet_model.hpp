@@ -130,6 +130,7 @@ struct PacketType {
     unsigned line = 0;
     Kind kind = Kind::unknown;  ///< unknown: not supported; a packet is decoded only up to such a field
     bool unread = false;        ///< what its values are is not understood: they are octets, or undefined
+    bool uncoded = false;       ///< it has no encoding, as of what ground derives: it can be in no packet
     std::string unit{};         ///< the first one; empty: the file gives none
     Coding coding{};
     std::vector<Label> labels{};

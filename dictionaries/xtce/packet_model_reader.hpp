@@ -78,7 +78,9 @@ class ModelTypes {
     unsigned depth_ = 0;
 };
 
-std::vector<PacketContainer> read_model_containers(const ModelParts& parts);
+std::vector<PacketContainer> read_model_containers(const ModelParts& parts,
+                                                   const std::vector<PacketParameter>& parameters,
+                                                   const std::vector<PacketType>& types);
 
 /// Reads one alarm: static ranges, labels, numbers of violations and conformances, AncillaryData "latch". What is not
 /// judged is a finding.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <string_view>
+#include <utility>
 
 namespace aeolis::dictionary::xtce {
 namespace {
@@ -165,6 +166,7 @@ void ModelTypes::read_valid_range(pugi::xml_node element, PacketType& type) {
 }
 
 void ModelTypes::read_coding(const Symbol& symbol, pugi::xml_node holder, PacketType& type) {
+    const bool is_base_uncoded = std::exchange(type.uncoded, false);
     for (const char* name : {"IntegerDataEncoding", "FloatDataEncoding"})
         if (const pugi::xml_node coding = holder.child(name)) return read_number(symbol, coding, type);
     if (const pugi::xml_node coding = holder.child("StringDataEncoding")) return read_text(symbol, coding, type);
@@ -184,8 +186,11 @@ void ModelTypes::read_coding(const Symbol& symbol, pugi::xml_node holder, Packet
             }
         return;
     }
-    if (symbol.element.attribute("baseType")) return;  // the base type has the encoding
-    parts_.report.fault(holder, "type " + in_quotes(type.name) + " has no data encoding that is supported");
+    if (symbol.element.attribute("baseType")) {  // the base type has the encoding
+        type.uncoded = is_base_uncoded;
+        return;
+    }
+    type.uncoded = true;  // a finding only where it is in a packet
     type.kind = PacketType::Kind::unknown;
 }
 

@@ -300,6 +300,233 @@ TEST_CASE("what a root says of itself and its name spaces is no finding", "[tele
     CHECK(read({{"m.xml", text}}, "05").findings.empty());
 }
 
+TEST_CASE("entries may lie over the header, told from the packet's beginning, and out of order",
+          "[telemetry][xtce][R54]") {  // Yamcs quickstart
+    const auto unsigned_of = [](const std::string& name, const std::string& bits) {
+        return "<IntegerParameterType name='" + name + "' signed='false'><IntegerDataEncoding sizeInBits='" + bits +
+               "'/></IntegerParameterType>";
+    };
+    const std::string direction =
+        "<BooleanParameterType name='direction' zeroStringValue='DOWN' oneStringValue='UP'><IntegerDataEncoding "
+        "sizeInBits='1'/></BooleanParameterType>";
+    const std::string word =
+        "<AggregateParameterType name='word'><MemberList><Member name='V' typeRef='u3'/><Member name='D' "
+        "typeRef='direction'/><Member name='Id' typeRef='u12'/></MemberList></AggregateParameterType>";
+    const auto over = [](const std::string& name, int bit) {
+        return "<ParameterRefEntry parameterRef='" + name +
+               "'><LocationInContainerInBits referenceLocation='containerStart'><FixedValue>" + std::to_string(bit) +
+               "</FixedValue></LocationInContainerInBits></ParameterRefEntry>";
+    };
+    const std::string header = "<SequenceContainer name='Header' abstract='true'><EntryList><ParameterRefEntry "
+                               "parameterRef='w'/><ParameterRefEntry parameterRef='count'/></EntryList>"
+                               "</SequenceContainer>";
+    const std::string house =
+        "<SequenceContainer name='House'><EntryList><ParameterRefEntry parameterRef='a'/>" + over("low", 29) +
+        over("mid", 27) + over("high", 25) +
+        "</EntryList><BaseContainer containerRef='Header'><RestrictionCriteria><ComparisonList><Comparison "
+        "value='DOWN' parameterRef='w/D'/><Comparison value='100' parameterRef='w/Id'/></ComparisonList>"
+        "</RestrictionCriteria></BaseContainer></SequenceContainer>";
+    const std::string types = u8 + u16 + unsigned_of("u3", "3") + unsigned_of("u12", "12") + direction + word;
+    const std::string parameters = parameter("w", "word") + parameter("count", "u16") + parameter("a", "u8") +
+                                   parameter("low", "u3") + parameter("mid", "u3") + parameter("high", "u3");
+    const auto of = [&](std::string_view packet) {
+        return read({{"m.xml", system_of(types, parameters, header + house)}}, packet);
+    };
+    const auto found = of("0064 c02d 07");
+    CHECK(found.findings.empty());
+    CHECK(found.values == "w.V=0 w.D=DOWN w.Id=100 count=49197 a=7 low=5 mid=3 high=2");
+    CHECK_THAT(of("1064 c02d 07").values, Catch::Contains("!") && !Catch::Contains("a="));  // UP
+    CHECK_THAT(of("0064 c02d 07 09").values, Catch::Contains("8 bits are behind the last entry of House"));
+}
+
+TEST_CASE("records are counted by the length they take, calibrated, and lie behind it in boxes of their own",
+          "[telemetry][xtce][R54]") {  // xtcetools, diagnostic log
+    const std::string form = "<EnumeratedParameterType name='form'><IntegerDataEncoding/><EnumerationList>"
+                             "<Enumeration value='0' label='SHORT'/><Enumeration value='1' label='LONG'/>"
+                             "</EnumerationList></EnumeratedParameterType>";
+    const std::string header = "<SequenceContainer name='Log' abstract='true'><EntryList><ParameterRefEntry "
+                               "parameterRef='length'/><ParameterRefEntry parameterRef='form'/></EntryList>"
+                               "</SequenceContainer>";
+    const std::string types =
+        "<IntegerParameterType name='records'><IntegerDataEncoding sizeInBits='16'><DefaultCalibrator>"
+        "<PolynomialCalibrator><Term coefficient='-1' exponent='0'/><Term coefficient='0.33333333333333' "
+        "exponent='1'/></PolynomialCalibrator></DefaultCalibrator></IntegerDataEncoding></IntegerParameterType>"
+        "<IntegerParameterType name='u6'><IntegerDataEncoding sizeInBits='6'/></IntegerParameterType>";
+    const auto start = [](int bit) {
+        return "<LocationInContainerInBits referenceLocation='containerStart'><FixedValue>" + std::to_string(bit) +
+               "</FixedValue></LocationInContainerInBits>";
+    };
+    const std::string list =
+        "<SequenceContainer name='Short'><EntryList><ParameterRefEntry parameterRef='n'>" + start(0) +
+        "</ParameterRefEntry><ContainerRefEntry containerRef='Record'>" + start(24) +
+        "<RepeatEntry><Count><DynamicValue><ParameterInstanceRef parameterRef='n'/></DynamicValue></Count>"
+        "</RepeatEntry></ContainerRefEntry><ParameterRefEntry parameterRef='end'/></EntryList><BaseContainer "
+        "containerRef='../Log'><RestrictionCriteria><Comparison parameterRef='form' value='SHORT'/>"
+        "</RestrictionCriteria></BaseContainer></SequenceContainer>"
+        "<SequenceContainer name='Record'><BinaryEncoding><SizeInBits><FixedValue>24</FixedValue></SizeInBits>"
+        "</BinaryEncoding><EntryList><ParameterRefEntry parameterRef='a'/><ParameterRefEntry parameterRef='b'>"
+        "<LocationInContainerInBits referenceLocation='previousEntry'><FixedValue>2</FixedValue>"
+        "</LocationInContainerInBits></ParameterRefEntry></EntryList></SequenceContainer>";
+    auto text =
+        system_of(u8 + u16 + form, parameter("length", "u16") + parameter("form", "form"), header, "", "Buffer");
+    const auto formats = system_of(
+        types, parameter("n", "records") + parameter("a", "../u8") + parameter("b", "u6") + parameter("end", "../u8"),
+        list, "", "Formats");
+    text.insert(text.rfind("</SpaceSystem>"), formats);
+    const auto of = [&](std::string_view packet) { return read({{"m.xml", text}}, packet); };
+    const auto found = of("0009 00 01c5ee 02ffee 7f");
+    CHECK(found.findings.empty());
+    CHECK_THAT(found.values,
+               Catch::StartsWith("length=9 form=SHORT n=") && Catch::EndsWith(" a=1 b=5 a=2 b=63 end=127"));
+    CHECK_THAT(of("0009 00 01c5ee 02ff").values, Catch::Contains("the packet ends before the end of Record"));
+    CHECK_THAT(of("000a 00 01c5ee 02ffee 7f").values, Catch::Contains("cannot be known"));
+    CHECK_THAT(of("0009 01 01c5ee 02ffee 7f").values, !Catch::Contains("a="));
+}
+
+TEST_CASE("a type has the encoding of the type it is based on, and references go down into SpaceSystems",
+          "[telemetry][xtce][R54]") {  // F´
+    const std::string types =
+        u8 + u16 + "<IntegerParameterType name='Id' baseType='u16' signed='false' sizeInBits='16'/>";
+    const std::string base =
+        "<SequenceContainer name='Channel' abstract='true'><EntryList><ParameterRefEntry parameterRef='id'/>"
+        "<ParameterRefEntry parameterRef='time'/></EntryList></SequenceContainer>";
+    auto text = system_of(types, parameter("id", "Id") + parameter("time", "Fw/Time"), base, "", "Deployment");
+    const std::string state =
+        "<EnumeratedParameterType name='State'><IntegerDataEncoding encoding='unsigned'/><EnumerationList><Enumeration "
+        "value='0' label='OK'/><Enumeration value='1' label='BAD'/></EnumerationList></EnumeratedParameterType>";
+    const std::string component = system_of(
+        state, parameter("State", "Part/State"),
+        "<SequenceContainer name='State'><EntryList><ParameterRefEntry parameterRef='Part/State'/></EntryList>"
+        "<BaseContainer containerRef='Channel'><RestrictionCriteria><ComparisonList><Comparison parameterRef='id' "
+        "value='258'/></ComparisonList></RestrictionCriteria></BaseContainer></SequenceContainer>",
+        "", "Part");
+    const std::string framework =
+        system_of("<AggregateParameterType name='Time'><MemberList><Member name='base' typeRef='Id'/><Member name='s' "
+                  "typeRef='u8'/></MemberList></AggregateParameterType>",
+                  "", "", "", "Fw");
+    text.insert(text.rfind("</SpaceSystem>"), component + framework);
+    const auto found = read({{"m.xml", text}}, "0102 0003 09 01");
+    CHECK(found.findings.empty());
+    CHECK(found.values == "id=258 time.base=3 time.s=9 State=BAD");
+    CHECK_THAT(read({{"m.xml", text}}, "0103 0003 09 01").values, !Catch::Contains("State="));
+}
+
+TEST_CASE("an array whose size stands nowhere is named, and its packet read up to it",
+          "[telemetry][xtce][R54]") {  // GovSat
+    const std::string types =
+        u8 +
+        "<IntegerParameterType name='i8' signed='true'><IntegerDataEncoding sizeInBits='8' "
+        "encoding='twosCompliment'/></IntegerParameterType>"
+        "<StringParameterType name='label'><StringDataEncoding><SizeInBits><Fixed><FixedValue>32</FixedValue></Fixed>"
+        "</SizeInBits></StringDataEncoding></StringParameterType>"
+        "<ArrayParameterType numberOfDimensions='1' arrayTypeRef='u8' name='axis'/>";
+    auto text = system_of(types, parameter("n", "i8") + parameter("s", "label") + parameter("v", "axis"),
+                          container("P", {"n", "s", "v"}));
+    const auto found = read({{"m.xml", text}}, "fe 41420000 0102");
+    CHECK_THAT(found.values, Catch::Equals("n=-2 s=AB ! the dimensions of v are not known (line 1)"));
+    REQUIRE(found.findings.size() == 1);
+    CHECK_THAT(found.findings[0], Catch::Contains("the dimensions of the array are told nowhere"));
+}
+
+TEST_CASE("a header includes its second part by a flag, and what derives from it begins behind what is there",
+          "[telemetry][xtce][R54]") {  // CCSDS 660.1-G
+    const std::string types =
+        u8 + "<IntegerParameterType name='bit'><IntegerDataEncoding sizeInBits='1'/></IntegerParameterType>"
+             "<IntegerParameterType name='u7'><IntegerDataEncoding sizeInBits='7'/></IntegerParameterType>"
+             "<AbsoluteTimeParameterType name='seconds'><Encoding units='seconds'><IntegerDataEncoding "
+             "sizeInBits='32'/></Encoding><ReferenceTime><Epoch>TAI</Epoch></ReferenceTime>"
+             "</AbsoluteTimeParameterType>"
+             "<AbsoluteTimeParameterType name='fraction'><Encoding scale='0.001' units='seconds'><IntegerDataEncoding "
+             "sizeInBits='16'/></Encoding><ReferenceTime><OffsetFrom parameterRef='coarse'/></ReferenceTime>"
+             "</AbsoluteTimeParameterType>"
+             "<AbsoluteTimeParameterType name='derived'><ReferenceTime><OffsetFrom parameterRef='coarse'/>"
+             "</ReferenceTime></AbsoluteTimeParameterType>"
+             "<FloatParameterType name='power4' sizeInBits='64'><IntegerDataEncoding sizeInBits='16' "
+             "encoding='twosCompliment'><DefaultCalibrator><PolynomialCalibrator><Term coefficient='-3' exponent='0'/>"
+             "<Term coefficient='0.5' exponent='1'/><Term coefficient='25e-2' exponent='4'/></PolynomialCalibrator>"
+             "</DefaultCalibrator></IntegerDataEncoding></FloatParameterType>";
+    const std::string containers =
+        "<SequenceContainer abstract='true' name='Header'><EntryList><ParameterRefEntry parameterRef='has'/>"
+        "<ParameterRefEntry parameterRef='type'/><ContainerRefEntry containerRef='Second'><IncludeCondition>"
+        "<Comparison parameterRef='has' value='1'/></IncludeCondition></ContainerRefEntry></EntryList>"
+        "</SequenceContainer>" +
+        container("Second", {"coarse", "fine"}) +
+        container("House", {"t"},
+                  "<BaseContainer containerRef='Header'><RestrictionCriteria><ComparisonList><Comparison value='24' "
+                  "parameterRef='type'/></ComparisonList></RestrictionCriteria></BaseContainer>");
+    const auto of = [&](std::string_view packet) {
+        return read({{"m.xml", system_of(types,
+                                         parameter("has", "bit") + parameter("type", "u7") +
+                                             parameter("coarse", "seconds") + parameter("fine", "fraction") +
+                                             parameter("t", "power4") + parameter("mission", "derived"),
+                                         containers)}},
+                    packet);
+    };
+    CHECK(of("18 fffe").findings.empty());  // a derived time without an encoding is in no packet
+    CHECK(of("18 fffe").values == "has=0 type=24 t=0");
+    CHECK_THAT(of("98 00000010 01f4 0002").values,
+               Catch::StartsWith("has=1 type=24 coarse=") && Catch::EndsWith(" t=2"));
+}
+
+TEST_CASE("a type without an encoding is a finding where it is in a packet", "[telemetry][xtce][R54]") {
+    const std::string none = "<IntegerParameterType name='none'/><AggregateParameterType name='pair'><MemberList>"
+                             "<Member name='a' typeRef='u8'/><Member name='b' typeRef='none'/></MemberList>"
+                             "</AggregateParameterType>";
+    const auto of = [&](const std::string& type) {
+        return read(
+            {{"m.xml", system_of(u8 + none, parameter("a", "u8") + parameter("n", type) + parameter("l", "none"),
+                                 container("P", {"a", "n"}))}},
+            "0102");
+    };
+    CHECK(of("u8").findings.empty());
+    for (const char* type : {"none", "pair"}) {
+        const auto found = of(type);
+        REQUIRE(found.findings.size() == 1);
+        CHECK_THAT(found.findings[0], Catch::Contains("type 'none' has no data encoding"));
+        CHECK_THAT(found.values, Catch::StartsWith("a=1") && Catch::Contains("!"));
+    }
+}
+
+TEST_CASE("calibration by context takes splines of another order, and an operation that is not read leaves undefined",
+          "[telemetry][xtce][R54]") {  // BogusSAT
+    const auto spline = [](int order, int first) {
+        std::string text = "<SplineCalibrator order='" + std::to_string(order) + "'>";
+        for (int i = 0; i < 3; ++i)
+            text += "<SplinePoint raw='" + std::to_string(10 * i) + "' calibrated='" + std::to_string(first + 5 * i) +
+                    "'/>";
+        return text + "</SplineCalibrator>";
+    };
+    const auto context = [](const std::string& label, const std::string& reference, const std::string& calibrator) {
+        return "<ContextCalibrator><ContextMatch><Comparison value='" + label + "' parameterRef='" + reference +
+               "'/></ContextMatch><Calibrator>" + calibrator + "</Calibrator></ContextCalibrator>";
+    };
+    const std::string types =
+        "<EnumeratedParameterType name='mode'><IntegerDataEncoding/><EnumerationList><Enumeration label='OFF' "
+        "value='0'/><Enumeration label='LOW' value='1'/><Enumeration label='HIGH' value='2'/></EnumerationList>"
+        "</EnumeratedParameterType><FloatParameterType name='sensor'><IntegerDataEncoding sizeInBits='16' "
+        "encoding='twosComplement'><DefaultCalibrator>" +
+        spline(1, 0) + "</DefaultCalibrator><ContextCalibratorList>" + context("LOW", "m", spline(1, 5)) +
+        context("HIGH", "/S/m", spline(0, 10)) +
+        "</ContextCalibratorList></IntegerDataEncoding></FloatParameterType>"
+        "<FloatParameterType name='operation'><FloatDataEncoding sizeInBits='32'><DefaultCalibrator>"
+        "<MathOperationCalibrator><ValueOperand>0.5</ValueOperand><ThisParameterOperand/><Operator>*</Operator>"
+        "</MathOperationCalibrator></DefaultCalibrator></FloatDataEncoding></FloatParameterType>";
+    const auto of = [&](std::string_view packet) {
+        return read(
+            {{"m.xml", system_of(types, parameter("m", "mode") + parameter("s", "sensor") + parameter("o", "operation"),
+                                 container("P", {"m", "s", "o"}))}},
+            packet);
+    };
+    CHECK_THAT(of("00 000f 40000000").values, Catch::StartsWith("m=OFF s=7.5 o="));
+    CHECK_THAT(of("01 000f 40000000").values, Catch::StartsWith("m=LOW s=12.5 o="));
+    CHECK_THAT(of("02 000f 40000000").values, Catch::StartsWith("m=HIGH s=15 o="));
+    CHECK_THAT(of("00 ffff 40000000").values, Catch::StartsWith("m=OFF s=undefined o="));  // outside of the spline
+    CHECK_THAT(of("00 000f 40000000").values, !Catch::Contains("o=1"));
+    REQUIRE(of("00 000f 40000000").findings.size() == 1);
+    CHECK_THAT(of("00 000f 40000000").findings[0],
+               Catch::Contains("a calibrator that is neither polynomial nor spline"));
+}
+
 TEST_CASE("names that several parameters of a packet have are unique, and the same as values, channels and times",
           "[telemetry][xtce][R54]") {
     const auto within = [](const std::string& name) {
