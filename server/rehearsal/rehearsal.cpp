@@ -169,11 +169,7 @@ simulation::Judgement Rehearsal::judgement() const {
 }
 
 std::vector<archive::LinkTotals> Rehearsal::link_totals() const {
-    std::vector<archive::LinkTotals> totals;
-    for (const auto& link : station().links())
-        totals.push_back({link.link.name, link.pltus.counters(), link.rate.per_second(landing().ert_now()),
-                          link.packets.counters(), 0, link.pltus.sequences()});
-    return totals;
+    return station().link_totals(landing().ert_now());
 }
 
 telemetry::Proof Rehearsal::proof() const {

@@ -29,19 +29,6 @@ std::vector<simulation::EventReportName> event_reports(const dictionary::Diction
     return reports;
 }
 
-/// The clock correlation from the dictionary if it is the scenario's clock; else the scenario's.
-ClockCorrelation clock_of(const simulation::Scenario& scenario, const dictionary::Dictionary& dictionary) {
-    constexpr std::int64_t same_us = 1000;  // chosen: resolution of a day-of-year text
-    const auto* known = dictionary.clock_at(scenario.entry_sclk);
-    if (known != nullptr &&
-        std::abs(known->scet_of(scenario.entry_sclk).microseconds - scenario.entry_scet.microseconds) < same_us)
-        return *known;
-    ClockCorrelation own;
-    own.sclk = scenario.entry_sclk;
-    own.scet = scenario.entry_scet;
-    return own;
-}
-
 commands::TrackingSchedule stations_of(const simulation::Scenario& scenario) {
     const auto ert = [&](double after_entry_s) {
         return Ert{scenario.entry_scet.microseconds + static_cast<std::int64_t>(after_entry_s * 1.0e6)};
@@ -75,6 +62,18 @@ std::vector<commands::NamedValue> solution_arguments(const simulation::Navigatio
         {"heatshield_speed_mps", solution.heatshield_speed_mps},
         {"backshell_altitude_m", solution.backshell_altitude_m},
     };
+}
+
+ClockCorrelation clock_of(const simulation::Scenario& scenario, const dictionary::Dictionary& dictionary) {
+    constexpr std::int64_t same_us = 1000;  // chosen: resolution of a day-of-year text
+    const auto* known = dictionary.clock_at(scenario.entry_sclk);
+    if (known != nullptr &&
+        std::abs(known->scet_of(scenario.entry_sclk).microseconds - scenario.entry_scet.microseconds) < same_us)
+        return *known;
+    ClockCorrelation own;
+    own.sclk = scenario.entry_sclk;
+    own.scet = scenario.entry_scet;
+    return own;
 }
 
 std::deque<ScriptedRequest> script_of(const simulation::Scenario& scenario, const dictionary::Dictionary& dictionary) {

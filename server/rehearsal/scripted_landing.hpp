@@ -29,6 +29,9 @@ struct ScriptedRequest {
 /// second of one processor. R19, R51
 std::deque<ScriptedRequest> script_of(const simulation::Scenario& scenario, const dictionary::Dictionary& dictionary);
 
+/// The clock correlation from the dictionary if it is the scenario's clock; else the scenario's.
+ClockCorrelation clock_of(const simulation::Scenario& scenario, const dictionary::Dictionary& dictionary);
+
 /// A landing with its command path and the scenario's own script, which is sent through that path.
 ///
 /// In       cycles to step; commands                    Out   what the station received; stages of commands

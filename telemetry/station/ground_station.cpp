@@ -64,6 +64,15 @@ void GroundStation::receive_frames(LinkReceiver& from, Ert ert) {
     }
 }
 
+std::vector<LinkTotals> GroundStation::link_totals(Ert now) const {
+    std::vector<LinkTotals> totals;
+    totals.reserve(links_.size());
+    for (const LinkReceiver& link : links_)
+        totals.push_back({link.link.name, link.pltus.counters(), link.rate.per_second(now), link.packets.counters(), 0,
+                          link.pltus.sequences()});
+    return totals;
+}
+
 /// Handles a link's change. A link that went down cannot complete a frame: its waiting octets are searched as they are.
 void GroundStation::note(const LinkState& state) {
     if (state.link == relay_link) relay_up_ = state.up;

@@ -4,6 +4,7 @@
 #include "telemetry/link_counters.hpp"
 #include "telemetry/proximity_packets.hpp"
 #include "telemetry/station/doppler_watch.hpp"
+#include "telemetry/station/link_ledger.hpp"
 #include "telemetry/station/received.hpp"
 #include "telemetry/station/recording_receiver.hpp"
 #include "telemetry/station/silence_classifier.hpp"
@@ -55,6 +56,8 @@ class GroundStation {
     };
     /// In the order of first reception.
     const std::vector<LinkReceiver>& links() const { return links_; }
+    /// Totals of each link so far.
+    std::vector<LinkTotals> link_totals(Ert now) const;
     const RecordingReceiver& recording() const { return recording_; }
     std::uint64_t unreadable_file_octets() const {
         return unreadable_file_octets_;

@@ -5,9 +5,11 @@
 #include "common/space_packet.hpp"
 #include "common/tm_frame.hpp"
 #include "flight/load.hpp"
+#include "server/archive/reader.hpp"
 #include "server/archive/sqlite.hpp"
 #include "server/base/json.hpp"
 #include "server/base/pcap.hpp"
+#include "server/scenario/scenario_text.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/web_client.hpp"
 #include "tests/support/catch.hpp"
@@ -1141,6 +1143,145 @@ TEST_CASE("a recorded capture becomes a run, and what is exported of it is what 
     CHECK(no_link.code == 1);
     CHECK_THAT(no_link.text, Catch::Contains("no octets of 'relay'"));
     CHECK(run(program(), "export --archive " + archive + " --run 1 --format pcap").code == 2);
+}
+
+namespace {
+
+/// What an archive's run 1 has of radio links, but for the times of reception.
+struct HeardByRadio {
+    std::string packets;                              ///< their octets, of each link
+    std::vector<std::string> values, events, counts;  ///< those of ground's own station left out
+};
+HeardByRadio heard_by_radio(const std::filesystem::path& archive, const std::vector<std::string>& links) {
+    HeardByRadio heard;
+    auto reader = std::move(aeolis::archive::Reader::open(archive, aeolis::tests::shipped_dictionary())).value();
+    const auto& channels = aeolis::tests::shipped_dictionary().channels;
+    const aeolis::archive::RunId run_id{1};
+    for (const auto& link : links) {
+        std::optional<aeolis::archive::RawPiece> after;
+        for (bool last = false; !last;) {
+            const auto page = reader.raw(run_id, {.packets = true, .link = link}, after);
+            REQUIRE(page);
+            last = page->last;
+            for (const auto& piece : page->pieces) heard.packets.append(piece.octets.begin(), piece.octets.end());
+            if (!page->pieces.empty()) after = page->pieces.back();
+        }
+    }
+    REQUIRE(reader.each_sample(run_id, {}, {}, [&](auto samples) -> aeolis::Result<void> {
+        for (const auto& each : samples) {
+            const auto& alias = std::ranges::find(channels, each.channel, &aeolis::dictionary::Channel::id)->alias;
+            if (alias.starts_with("STA-")) continue;
+            heard.values.push_back(
+                fmt::format("{} {} {} {}", alias, each.sclk.seconds, each.value, each.text.value_or("")));
+        }
+        return {};
+    }));
+    aeolis::archive::EventQuery query;
+    query.duplicates = true;
+    do {
+        const auto page = reader.events(run_id, query);
+        REQUIRE(page);
+        for (const auto& item : page->events())
+            if (item.has_event() && item.event().name() != "SEEN_BY_DOPPLER")
+                heard.events.push_back(
+                    fmt::format("{} {} {}", item.event().sclk(), item.event().name(), item.event().text()));
+        query.after = page->next_after();
+    } while (query.after != 0);
+    auto proof = reader.proof(run_id);
+    REQUIRE(proof);
+    for (auto& each : *proof->mutable_counters()) {
+        each.clear_octets_per_s();
+        if (std::ranges::find(links, each.link()) != links.end()) heard.counts.push_back(each.ShortDebugString());
+    }
+    for (auto* list : {&heard.values, &heard.events, &heard.counts}) std::ranges::sort(*list);
+    return heard;
+}
+
+/// The first rows in which the lists differ; empty: they do not.
+std::string first_difference(const std::vector<std::string>& found, const std::vector<std::string>& expected) {
+    const auto [a, b] = std::ranges::mismatch(found, expected);
+    const auto row = [](const auto& list, auto at) { return at == list.end() ? "none" : *at; };
+    return a == found.end() && b == expected.end() ? ""
+                                                   : fmt::format("{} of {} rows, not {} of {}", row(found, a),
+                                                                 found.size(), row(expected, b), expected.size());
+}
+
+}  // namespace
+
+TEST_CASE("the octets of a landing's radio link become a run with the packets, values, events and counts of the "
+          "landing's own",
+          "[cli][ingest][R55]") {
+    if (program().empty()) return;
+    const aeolis::test::TemporaryFolder folder;
+    const auto path = [&](const char* name) { return " '" + (folder / name).string() + "'"; };
+    const auto call = [&](const std::string& arguments, int code = 0) {
+        const auto ended = run(program(), arguments);
+        INFO(arguments << " -> " << ended.code << ": " << ended.text);
+        CHECK(ended.code == code);
+        return ended.text;
+    };
+    std::ofstream{folder / "s.textproto"} << aeolis::server::scenario_to_text(aeolis::test::short_landing());
+    call("rehearse --seed 4 --scenario" + path("s.textproto") + " --archive" + path("a.db"));
+    call("export --run 1 --raw --format pcap --archive" + path("a.db") + " --out" + path("all.pcap"));
+    call("export --run 1 --raw --link uhf_live --archive" + path("a.db") + " --out" + path("u.bin"));
+    const std::string ingest = "ingest --scenario" + path("s.textproto") + " --archive";
+    // Until tones begin, X-band brings the same telemetry; after landing the recording on board comes.
+    const auto said = call(ingest + path("b.db") + path("all.pcap") +
+                               " --link relay=4200 --link uhf_live=4201 --link x_band_telemetry=4202",
+                           1);
+    CHECK_THAT(said, Catch::Contains("run 1\n") && Catch::Contains("x_band_telemetry: ") &&
+                         Catch::Contains("frames missing"));  // in the blackout
+    call(ingest + path("c.db") + path("u.bin") + " --link uhf_live --bits-per-second 8000", 1);
+    const std::vector<std::string> links{"relay", "uhf_live", "x_band_telemetry"};
+    const auto own = heard_by_radio(folder / "a.db", links);
+    CHECK(own.packets.size() > 100'000);
+    CHECK(own.values.size() > 10'000);
+    CHECK(own.events.size() > 50);
+    CHECK(own.counts.size() == 3);
+    const auto whole = heard_by_radio(folder / "b.db", links);
+    CHECK((whole.packets == own.packets));
+    CHECK(first_difference(whole.values, own.values) == "");
+    CHECK(first_difference(whole.events, own.events) == "");
+    CHECK(first_difference(whole.counts, own.counts) == "");
+    const auto of_uhf = heard_by_radio(folder / "a.db", {"uhf_live"}),
+               plain = heard_by_radio(folder / "c.db", {"uhf_live"});
+    CHECK((plain.packets == of_uhf.packets));
+    CHECK(first_difference(plain.counts, of_uhf.counts) == "");
+    CHECK(std::ranges::includes(own.values, plain.values));
+    // What was ingested is exported again.
+    call("export --run 1 --raw --link uhf_live --archive" + path("b.db") + " --out" + path("again.bin"));
+    const auto text_of = [&](const char* name) {
+        std::ifstream in{folder / name, std::ios::binary};
+        return std::string{std::istreambuf_iterator<char>{in}, {}};
+    };
+    CHECK((text_of("again.bin") == text_of("u.bin")));
+    for (const auto& [arguments, code, says] :
+         {std::tuple{std::string{"--link x_band"}, 2, "it has samples"},
+          {"--link downlink", 2, "our own mission has uhf_live"},
+          {"--link uhf_live=0", 2, "'0' is no UDP port"},
+          {"--link uhf_live=1 --link relay", 2, "of several each needs its port"},
+          {"--link uhf_live=1 --link uhf_live=2", 2, "given before"},
+          {"--link uhf_live --format pltu --xtce x.xml", 2, "--xtce, --format: --link names a radio link"},
+          {"--link uhf_live --at 3", 2, "--at: --link names a radio link"},
+          {"--link uhf_live --start 2012-219T05:10:00", 2, "times of its own"},
+          {"--link uhf_live --scenario no_such", 2, "no_such"},
+          {"--link uhf_live=4300", 1, "no packet of our own mission is in it"}})
+        CHECK_THAT(call("ingest " + arguments + " --archive" + path("d.db") + path("all.pcap"), code),
+                   Catch::Contains(says));
+    std::ofstream{folder / "noise.bin"} << std::string(50'000, 'x');
+    CHECK_THAT(call("ingest --link uhf_live --archive" + path("d.db") + path("noise.bin"), 1),
+               Catch::Contains("no packet of our own mission is in it"));
+    CHECK_THAT(call(ingest + path("d.db") + path("u.bin") + " --link uhf_live=4200 --link relay=4201", 2),
+               Catch::Contains("u.bin: not a capture, so of one link"));
+    CHECK_FALSE(std::filesystem::exists(folder / "d.db"));
+    CHECK_THAT(call(ingest + path("d.db") + path("all.pcap") + " --link uhf_live", 1),
+               Catch::Contains("say which by --link NAME=PORT"));
+    // A frame damaged on the way, and the end cut off.
+    auto damaged = text_of("u.bin");
+    for (std::size_t at = 20'000; at < 20'020; ++at) damaged[at] = static_cast<char>(~damaged[at]);
+    std::ofstream{folder / "hurt.bin", std::ios::binary} << damaged.substr(0, damaged.size() / 2);
+    CHECK_THAT(call("ingest --link uhf_live --archive" + path("d.db") + path("hurt.bin"), 1),
+               Catch::Contains("uhf_live: ") && Catch::Contains("frames missing"));
 }
 
 TEST_CASE("a landing's samples and their predict are made together, and decode reads the tones out of them",
