@@ -30,6 +30,13 @@ constexpr double noise_far_hz = 600.0;            // the reach of the tones; cho
 constexpr double part_burst_ratio = 4.0;          // of a part's power to the median of a hop's; chosen
 constexpr double seen_least = 0.25;               // of a hop or window; with less it is a gap; chosen
 constexpr double swing_energy = 0.6;              // of the energy expected: below, the carrier swings; chosen
+constexpr double swerve_level_hz = 40.0;          // 16 dB-Hz: a weaker carrier is not found in 0.4 s; chosen
+constexpr double swerve_hz = 60.0;                // to either side; chosen
+constexpr double swerve_step_hzps2 = 800.0;       // of the rate's change: half of it costs 0.5 dB in 0.4 s; chosen
+constexpr int swerve_steps = 3;                   // to either side: a parachute's snatch is 2000 Hz/s²; chosen
+constexpr double swerve_sigma_hz = 1.5;           // of the frequency, by a change of rate between the steps
+constexpr double swerve_seen = 0.9;               // of a window: with less many lines fit equally; chosen
+constexpr double false_swerve = 0.001;            // probability in noise; chosen
 constexpr double genuine_energy = 8.0;            // of a hop: with less its gain is smaller; chosen
 constexpr double genuine_gain = 0.1;              // of each hop: 1.2 s; chosen
 constexpr double fitted_bias = 2.0;               // of the four fitted numbers, in units of noise energy
@@ -49,6 +56,10 @@ CarrierTracker::CarrierTracker(const HopLayout& layout) : layout_(layout), spect
         const FitSpan span{100.0, hops == 1 ? 6 : CarrierFit::rate_lines_max};
         swinging_.push_back({hops, hops * layout.hop_s(), CarrierFit{hops * HopLayout::parts, part_s}, span, span});
     }
+}
+
+double CarrierTracker::Fitted::gathered() const {
+    return found ? (line.energy - fitted_bias) / (seen * length_s) : 0.0;
 }
 
 void CarrierTracker::start(std::int64_t first_sample, double frequency_hz, double rate_hzps) {
@@ -156,8 +167,13 @@ void CarrierTracker::normalize(Wiped& wiped) {
     const auto scale = static_cast<float>(1.0 / std::sqrt(std::max(noise_density_, 1e-60)));
     for (auto& sample : wiped.thinned) sample *= scale;
     wiped.spectrum = powers;
+    wiped.spectrum_hz = wiped.frequency_hz + 0.5 * wiped.rate_hzps * layout_.hop_s();
     const auto one = static_cast<float>(1.0 / (std::max(noise_density_, 1e-60) * layout_.thinned_rate_hz()));
     for (auto& power : wiped.spectrum) power *= one;
+    sum_parts(wiped);
+}
+
+void CarrierTracker::sum_parts(Wiped& wiped) const {
     for (int part = 0; part < HopLayout::parts; ++part) {
         std::complex<float> sum{};
         for (int i = 0; i < layout_.part_samples; ++i)
@@ -166,15 +182,36 @@ void CarrierTracker::normalize(Wiped& wiped) {
     }
 }
 
-CarrierTracker::Fitted CarrierTracker::fit_around(std::size_t middle, Window& window, bool wide) {
-    const auto aside = static_cast<std::size_t>(window.hops / 2);
+/// Turns the waiting hops to the newest fit. Of a carrier that swerves their prediction is soon too far off to be
+/// summed.
+void CarrierTracker::turn_waiting() {
+    for (std::size_t i = waiting_ + 1; i < hops_.size(); ++i) {
+        Wiped& hop = hops_[i];
+        Wiped turned;
+        const double since_s = static_cast<double>(hop.first_sample - frequency_sample_) / layout_.rate_hz;
+        turned.frequency_hz = frequency_hz_ + rate_hzps_ * since_s;
+        turned.rate_hzps = rate_hzps_;
+        turned.phase_cycles = hop.phase_cycles;
+        for (std::size_t k = 0; k < hop.thinned.size(); ++k) {
+            const double at_s = (static_cast<double>(k) + 0.5) / layout_.thinned_rate_hz();
+            const double cycles = hop.cycles_at(at_s) - turned.cycles_at(at_s);
+            hop.thinned[k] *= static_cast<std::complex<float>>(std::polar(1.0, turn_rad * cycles));
+        }
+        hop.frequency_hz = turned.frequency_hz;
+        hop.rate_hzps = turned.rate_hzps;
+        sum_parts(hop);
+    }
+}
+
+/// Makes `aligned_` the parts of a window, turned to the prediction of its middle hop.
+void CarrierTracker::align(std::size_t middle, int hops, Fitted& fitted) {
+    const auto aside = static_cast<std::size_t>(hops / 2);
     const Wiped& reference = hops_[middle];
     const double part_s = layout_.hop_s() / HopLayout::parts;
     aligned_.clear();
-    Fitted fitted;
     for (std::size_t i = middle - aside; i <= middle + aside; ++i) {
         const Wiped& hop = hops_[i];
-        fitted.seen += hop.seen / window.hops;
+        fitted.seen += hop.seen / hops;
         const double begin_s = static_cast<double>(hop.first_sample - reference.first_sample) / layout_.rate_hz;
         // Rotates from the hop's own prediction to that of the window's middle.
         for (int part = 0; part < HopLayout::parts; ++part) {
@@ -185,6 +222,12 @@ CarrierTracker::Fitted CarrierTracker::fit_around(std::size_t middle, Window& wi
                 i == middle ? sum : sum * static_cast<std::complex<float>>(std::polar(1.0, turn_rad * cycles)));
         }
     }
+}
+
+CarrierTracker::Fitted CarrierTracker::fit_around(std::size_t middle, Window& window, bool wide) {
+    const double part_s = layout_.hop_s() / HopLayout::parts;
+    Fitted fitted;
+    align(middle, window.hops, fitted);
     fitted.length_s = window.length_s;
     fitted.wide = wide;
     if (fitted.seen < seen_least) return fitted;
@@ -197,18 +240,64 @@ CarrierTracker::Fitted CarrierTracker::fit_around(std::size_t middle, Window& wi
 
 /// A carrier that swings bends within the usual window: of the shorter ones, the one that gathers what is expected.
 CarrierTracker::Fitted CarrierTracker::fit_swinging(std::size_t middle, const Fitted& usual) {
-    const auto gathered = [](const Fitted& fitted) {
-        return fitted.found ? (fitted.line.energy - fitted_bias) / (fitted.seen * fitted.length_s) : 0.0;
-    };
     Fitted best = usual;
     for (Window& window : swinging_) {
-        if (gathered(best) >= swing_energy * level_hz_ && best.found) break;
+        if (best.gathered() >= swing_energy * level_hz_ && best.found) break;
         const auto aside = static_cast<std::size_t>(window.hops / 2);
         if (middle < aside || middle + aside >= hops_.size()) continue;
         const Fitted shorter = fit_around(middle, window, true);
-        if (shorter.found && gathered(shorter) > longer_gain * gathered(best)) best = shorter;
+        if (shorter.found && shorter.gathered() > longer_gain * best.gathered()) best = shorter;
     }
     return best;
+}
+
+/// A carrier whose rate changes since the newest fit: the line that gathers most, of those along which it does so
+/// evenly.
+CarrierTracker::Fitted CarrierTracker::fit_swerving(std::size_t middle) {
+    Window& window = swinging_.front();
+    const auto aside = static_cast<std::size_t>(window.hops / 2);
+    Fitted best;
+    if (middle < aside || middle + aside >= hops_.size()) return best;
+    align(middle, window.hops, best);
+    best.length_s = window.length_s;
+    best.wide = best.swerves = true;
+    if (best.seen < swerve_seen) return best;
+    const Wiped& hop = hops_[middle];
+    const double part_s = layout_.hop_s() / HopLayout::parts;
+    const double since_s =
+        static_cast<double>(hop.first_sample + layout_.hop_samples() / 2 - frequency_sample_) / layout_.rate_hz;
+    for (int step = -swerve_steps; step <= swerve_steps; ++step) {
+        const double bend = step * swerve_step_hzps2;
+        const double hz = frequency_hz_ + rate_hzps_ * since_s + 0.5 * bend * since_s * since_s - hop.frequency_hz -
+                          0.5 * hop.rate_hzps * layout_.hop_s();
+        const double hzps = rate_hzps_ + bend * since_s - hop.rate_hzps;
+        bent_.clear();
+        for (std::size_t i = 0; i < aligned_.size(); ++i) {
+            const double at_s = (static_cast<double>(i) - 0.5 * static_cast<double>(aligned_.size() - 1)) * part_s;
+            const double cycles = ((bend / 6.0 * at_s + 0.5 * hzps) * at_s + hz) * at_s;
+            bent_.push_back(aligned_[i] * static_cast<std::complex<float>>(std::polar(1.0, -turn_rad * cycles)));
+        }
+        CarrierLine line = window.fit.fit(bent_, 1.0 / part_s, {swerve_hz, CarrierFit::rate_lines_max});
+        if (line.energy <= best.line.energy) continue;
+        line.frequency_hz += hz;
+        line.rate_hzps += hzps;
+        best.line = line;
+    }
+    best.line.amplitude /= best.seen;
+    best.line.energy /= best.seen;
+    constexpr int lines = (2 * CarrierFit::rate_lines_max + 1) * (2 * swerve_steps + 1);
+    best.found = best.line.energy >= std::log(2.0 * swerve_hz * best.length_s * lines / false_swerve);
+    return best;
+}
+
+/// Where the usual window finds nothing or too little: a line that bends, if it gathers more than a straight one over
+/// as long, or nearly as much as one over a single hop, which is chosen for its noise, too.
+CarrierTracker::Fitted CarrierTracker::may_swerve(std::size_t middle, const Fitted& straight) {
+    const bool is_short = straight.length_s < windows_[window_].length_s;
+    if (level_hz_ <= swerve_level_hz || (straight.found && !is_short)) return straight;
+    const Fitted bent = fit_swerving(middle);
+    const double needed = straight.length_s < bent.length_s ? 1.0 / longer_gain : longer_gain;
+    return bent.found && bent.gathered() > needed * straight.gathered() ? bent : straight;
 }
 
 CarrierHop CarrierTracker::demodulated(const Wiped& hop, const CarrierLine& line, const Fitted& fitted) {
@@ -217,12 +306,13 @@ CarrierHop CarrierTracker::demodulated(const Wiped& hop, const CarrierLine& line
     out.found = true;
     out.seen = hop.seen;
     out.spectrum = hop.spectrum;
-    out.spectrum_hz = hop.frequency_hz + 0.5 * hop.rate_hzps * layout_.hop_s();
+    out.spectrum_hz = hop.spectrum_hz;
     out.frequency_hz = hop.frequency_hz + 0.5 * hop.rate_hzps * layout_.hop_s() + line.frequency_hz;
     out.rate_hzps = hop.rate_hzps + line.rate_hzps;
     const double energy = std::max(line.energy - fitted_bias, 1.0), seen_s = fitted.seen * fitted.length_s;
     out.carrier_n0_hz = energy / seen_s;
-    out.frequency_deviation_hz = std::sqrt(6.0 / energy) / (turn_rad * seen_s);
+    out.frequency_deviation_hz =
+        std::hypot(std::sqrt(6.0 / energy) / (turn_rad * seen_s), fitted.swerves ? swerve_sigma_hz : 0.0);
     const double sample_s = 1.0 / layout_.thinned_rate_hz();
     const double begin_s = -0.5 * layout_.hop_s() + 0.5 * sample_s;
     std::complex<double> phasor = std::polar(
@@ -257,7 +347,7 @@ void CarrierTracker::follow(const Wiped& hop, const Fitted& fitted) {
     frequency_hz_ = hop.frequency_hz + 0.5 * hop.rate_hzps * layout_.hop_s() + fitted.line.frequency_hz;
     rate_hzps_ = hop.rate_hzps + fitted.line.rate_hzps;
     frequency_sample_ = hop.first_sample + layout_.hop_samples() / 2;
-    const double level_hz = (fitted.line.energy - fitted_bias) / (fitted.seen * fitted.length_s);
+    const double level_hz = fitted.gathered();
     level_hz_ = level_hz_ == 0.0 ? level_hz : level_of_old * level_hz_ + (1.0 - level_of_old) * level_hz;
 }
 
@@ -300,7 +390,8 @@ void CarrierTracker::fit_waiting(std::vector<CarrierHop>& out) {
         done.gap = hop.seen == 0.0 || fitted.seen < seen_least;
         if (!fitted.found && !fitted.wide && !done.gap) fitted = fit_around(middle, window, true);
         const bool usual = fitted.found && !fitted.wide && window_ == 0;
-        if (settled_ && window_ == 0 && middle == waiting_ && !done.gap) fitted = fit_swinging(middle, fitted);
+        const bool may_swing = settled_ && window_ == 0 && middle == waiting_ && !done.gap;
+        if (may_swing) fitted = may_swerve(middle, fit_swinging(middle, fitted));
         const CarrierLine& line = fitted.line;
         if (fitted.found && line.energy < longer_gain * energy_before_longer_) {
             shorten();
@@ -329,6 +420,7 @@ void CarrierTracker::fit_waiting(std::vector<CarrierHop>& out) {
                 done.in_phase.clear();
             }
             follow(hops_[middle], fitted);
+            if (may_swing && fitted.length_s < window.length_s && fitted.seen >= swerve_seen) turn_waiting();
             done.lock = settled_ && usual && fitted.length_s == window.length_s && !done.gap ? CarrierLock::locked
                                                                                              : CarrierLock::fluctuating;
             if (done.gap) done.lock = CarrierLock::coasting;

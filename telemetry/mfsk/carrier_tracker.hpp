@@ -57,7 +57,8 @@ struct HopLayout {
 /// Noise   of each hop by itself: the median of its spectrum around the carrier. All else is relative to it, so that a
 ///         change of gain changes nothing. Parts of 4 ms with four times a hop's usual power are gaps
 /// Effort  a narrow fit over 0.6 s, a wide one when that fails or has too little energy, then over 0.4 and 0.1 s for a
-///         carrier that swings; windows of 1.4, 2.6 and 5.1 s for a weak one
+///         carrier that swings, and over 0.4 s along lines that bend for one that swerves, as when a parachute opens:
+///         there the waiting hops are turned to each new fit; windows of 1.4, 2.6 and 5.1 s for a weak one
 /// Memory  the longest window
 /// Faults  a line beyond the parts' band, which the fit sees at another frequency, is not in the samples there: it is
 ///         lost at once. The carrier is lost after 1.5 s, or three quarters of a window, without it (20 s when it has
@@ -91,6 +92,7 @@ class CarrierTracker {
         std::array<std::complex<float>, HopLayout::parts> parts{};
         double seen = 0.0;  ///< fraction that is not a gap
         std::vector<float> spectrum;
+        double spectrum_hz = 0.0;
         double cycles_at(double from_begin_s) const {
             return phase_cycles + frequency_hz * from_begin_s + 0.5 * rate_hzps * from_begin_s * from_begin_s;
         }
@@ -106,14 +108,22 @@ class CarrierTracker {
         CarrierLine line;  ///< with noise of density 1
         double length_s = 0.0, seen = 0.0;
         bool found = false, wide = false;
+        bool swerves = false;  ///< its rate changes
+        /// Energy a second, less that of noise; 0 unless found.
+        double gathered() const;
     };
 
     Wiped wipe(std::span<const std::complex<float>> hop);
     void leave_out_bursts(Wiped& wiped) const;
     void normalize(Wiped& wiped);
+    void sum_parts(Wiped& wiped) const;
+    void align(std::size_t middle, int hops, Fitted& fitted);
+    void turn_waiting();
     void fit_waiting(std::vector<CarrierHop>& out);
     Fitted fit_around(std::size_t middle, Window& window, bool wide);
     Fitted fit_swinging(std::size_t middle, const Fitted& usual);
+    Fitted fit_swerving(std::size_t middle);
+    Fitted may_swerve(std::size_t middle, const Fitted& straight);
     CarrierHop demodulated(const Wiped& hop, const CarrierLine& line, const Fitted& fitted);
     void follow(const Wiped& hop, const Fitted& fitted);
     void choose_window(double energy);
@@ -123,7 +133,7 @@ class CarrierTracker {
     std::vector<Window> windows_, swinging_;
     std::size_t window_ = 0;
     Spectrum spectrum_;  ///< of a hop
-    std::vector<std::complex<float>> aligned_;
+    std::vector<std::complex<float>> aligned_, bent_;
 
     std::deque<Wiped> hops_;
     std::size_t waiting_ = 0;  ///< index in hops_ of the first not yet fitted

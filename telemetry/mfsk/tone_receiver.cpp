@@ -12,6 +12,9 @@ namespace {
 constexpr double level_gain = 0.1;        // of each hop in the running mean of C/N0: 1.2 s; chosen
 constexpr std::size_t tracks_max = 3;     // chosen
 constexpr int missing_hops = 4;           // without the carrier, before another is taken; chosen
+constexpr int taken_up_hops = 4;          // found, of a track that takes the carrier up again; chosen
+constexpr int taken_up_within = 24;       // hops: later, the carrier may have come back by itself before; chosen
+constexpr double taken_up_power = 0.25;   // of the carrier's; chosen
 constexpr int wait_hops = 46;             // 5.7 s: the longest search and the tracker's delay
 constexpr double kept_s = 6.0;            // of samples
 constexpr double same_hz = 60.0;          // nearer than this it is the same carrier; chosen
@@ -387,13 +390,23 @@ bool ToneReceiver::passes_main(bool last) {
                     return true;
                 }
         }
-        if (!last && received_ - fed_ < wait_hops) return false;
+        if (!last && received_ - fed_ < wait_hops && !is_taken_up(track)) return false;
     }
     HopEvidence copy = hop;
     track.hops.pop_front();
     ++track.first_hop;
     pass(copy);
     return true;
+}
+
+/// Whether another track has taken up the carrier that `missing` no longer finds, so that it need not be waited for.
+bool ToneReceiver::is_taken_up(const Track& missing) const {
+    if (!missing.ended && missing.tracker.missed() < missing_hops) return false;
+    return std::ranges::any_of(tracks_, [&](const Track& other) {
+        return &other != &missing && other.first_hop <= fed_ + taken_up_within &&
+               other.carrier_n0_hz >= taken_up_power * missing.carrier_n0_hz &&
+               std::ranges::count_if(other.hops, &HopEvidence::found) >= taken_up_hops;
+    });
 }
 
 bool ToneReceiver::passes_without_main(bool last) {
@@ -410,7 +423,10 @@ bool ToneReceiver::passes_without_main(bool last) {
         main_ = best;
         return true;
     }
-    if (!last && (is_awaited || received_ - fed_ < wait_hops)) return false;
+    const bool begins_later = std::ranges::any_of(tracks_, [&](const Track& other) {
+        return other.first_hop > fed_ && std::ranges::count_if(other.hops, &HopEvidence::found) >= taken_up_hops;
+    });
+    if (!last && (is_awaited || (received_ - fed_ < wait_hops && !begins_later))) return false;
     HopEvidence none;
     none.first_sample = fed_ * layout_.hop_samples();
     pass(none);

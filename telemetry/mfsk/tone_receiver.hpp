@@ -118,6 +118,7 @@ class ToneReceiver {
     void feed(bool last);
     void pass(HopEvidence hop);
     bool passes_main(bool last);
+    bool is_taken_up(const Track& missing) const;
     bool passes_without_main(bool last);
     void learn_clock(const HopEvidence& hop);
     void judge_clock();

@@ -2,6 +2,7 @@
 #include "telemetry/mfsk/carrier_tracker.hpp"
 #include "tests/support/tone_signal.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace telemetry_carrier_tracker_test {
@@ -59,6 +60,35 @@ TEST_CASE("each hop comes out once and in order, with the frequency of a swingin
     CHECK(std::sqrt(squares / 240.0) < 0.5);
     CHECK(hops[120].lock == CarrierLock::locked);
     CHECK(10.0 * std::log10(hops[120].carrier_n0_hz) == Approx(22.0).margin(3.0));
+}
+
+TEST_CASE("a carrier that a parachute's opening makes swerve is followed without a break", "[tones]") {
+    simulation::XBandPath path;
+    path.rate_hz = 8192.0;
+    path.total_c_n0_dbhz = 20.5;
+    // The rate grows to 1000 Hz/s within 0.8 s, and fades.
+    constexpr double opens_s = 10.0, opening_s = 0.8, step_s = 1.0 / 64.0;
+    std::vector<double> time_s, doppler_hz;
+    double hz = -500.0;
+    for (double t = 0.0; t < 21.0; t += step_s) {
+        time_s.push_back(t);
+        doppler_hz.push_back(hz);
+        const double opened = std::clamp((t - opens_s) / opening_s, 0.0, 1.0);
+        hz += step_s * 1000.0 * opened * opened * (3.0 - 2.0 * opened) *
+              std::exp(-std::max(t - opens_s - opening_s, 0.0) / 2.0);
+    }
+    path.doppler_hz = table(time_s, doppler_hz);
+    const auto hops = tracked(path, 20.0, -500.0);
+    REQUIRE(hops.size() == 160);
+    int found = 0;
+    for (std::size_t i = 80; i < 158; ++i) {
+        CAPTURE(i);
+        found += hops[i].found;
+        if (hops[i].found)
+            CHECK(std::abs(hops[i].frequency_hz - path.doppler_hz.at((static_cast<double>(i) + 0.5) * 0.125)) <
+                  8.0 + 5.0 * hops[i].frequency_deviation_hz);
+    }
+    CHECK(found >= 76);
 }
 
 TEST_CASE("a carrier that ends is lost within 7 s, and no hop is missing", "[tones]") {
