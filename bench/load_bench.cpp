@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The ground under its design load.
 //
-// Each second 2000 packets of 1.5 kB are decoded and stored, and sent to a thousand clients that follow 30 channels at
-// 20 Hz and every event; one client is stalled. First all follow the same channels, then each has some of its own. The
-// first, a middle and the last client are watched, and the stalled one when it reads again. Then the same once more,
-// while programs ask for every list of the API at once: of the run itself, of one with 4096 commands, and of what
-// people made.
+// Each second 2000 packets of 1.5 kB come and are kept as they came, decoded and stored, and sent to a thousand clients
+// that follow 30 channels at 20 Hz and every event; one client is stalled. First all follow the same channels, then each
+// has some of its own. The first, a middle and the last client are watched, and the stalled one when it reads again.
+// Then the same once more, while programs ask for every list of the API at once: of the run itself, of one with 4096
+// commands, and of what people made.
 
 #include "bench/list_readers.hpp"
 #include "bench/loopback_clients.hpp"
@@ -379,7 +379,7 @@ void under_load(Channels channels, bool with_lists) {
     web->post([&hub, state] { hub.run_state(state); });
 
     std::uint64_t sent_packets = 0, sent_events = 0, sent_tones = 0, sent_stages = 0;
-    std::uint64_t resident = 0;
+    std::uint64_t resident = 0, raw_octets = 0;
     double behind_s = 0.0;
     {
         std::size_t joined = 0;
@@ -419,7 +419,10 @@ void under_load(Channels channels, bool with_lists) {
                 seal_tm_packet(octets, Apid{static_cast<std::uint16_t>(kind + 1)},
                                static_cast<std::uint16_t>(sent_packets / packet_kinds & 0x3FFFU), Sclk{now},
                                dictionary.id);
+                delivery.entries.emplace_back(
+                    telemetry::ReceivedOctets{telemetry::uhf_live_link, Ert{std::llround(now * 1e6)}, octets});
                 delivery.entries.emplace_back(telemetry::ReceivedPacket{telemetry::uhf_live_link, Ert{0}, octets});
+                raw_octets += octets.size();
             }
             for (; static_cast<double>(sent_events) < (now - begin) * events_per_s; ++sent_events) {
                 BitWriter told{std::span<std::uint8_t>(event).subspan(tm_data_offset_octets)};
@@ -503,6 +506,10 @@ void under_load(Channels channels, bool with_lists) {
          static_cast<double>(2 * (sent_packets + sent_events) + sent_tones + sent_stages) -
              static_cast<double>(reader->last_seq(*run).value()),
          0.0, "");
+    const auto raw_links = reader->raw_links(*run).value();
+    const double raw_kept = raw_links.empty() ? 0.0 : static_cast<double>(raw_links.front().octets);
+    std::printf("  %.1f MB kept as they came\n", raw_kept * 1e-6);
+    goal("octets that are not in the archive as they came", static_cast<double>(raw_octets) - raw_kept, 0.0, "");
     web->stop();
     network.join();
     queries.reset();
