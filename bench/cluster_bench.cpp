@@ -125,7 +125,7 @@ bool whole_landing(const std::filesystem::path& file, double landing_s) {
         if (given->empty()) break;
         for (const auto& one : *given) messages.emplace_back(one.octets());
     }
-    bench::must(engine->make_stream("BARE", "bare.>", cluster::Keep::all).ok(), "a stream");
+    bench::must(engine->make_stream("BARE", "bare.>", cluster::Retention::all).ok(), "a stream");
     begin = Clock::now();
     bench::must(engine->publish("bare.1", messages).ok(), "bare publishing");
     const double bare_s = since_s(begin);

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 namespace aeolis::commands {
-void CommandGateway::receive(const Heard& packet, std::vector<StageReport>& stages) {
+void CommandGateway::receive(const DownlinkedPacket& packet, std::vector<StageReport>& stages) {
     // A recording is too old for preconditions and the CLCW, but it may hold an answer or a report that was lost live.
     const auto& decoded = packet.decoded;
     if (packet.live) note_channels(packet);
@@ -36,13 +36,13 @@ std::vector<LatestValue> CommandGateway::latest(Ert now) const {
     return values;
 }
 
-void CommandGateway::note_channels(const Heard& packet) {
+void CommandGateway::note_channels(const DownlinkedPacket& packet) {
     const auto& fields = dictionary_.packets[packet.decoded.packet].fields;
     for (std::size_t i = 0; i < fields.size(); ++i)
         if (const auto& channel = fields[i].channel) heard_[channel->value] = {packet.decoded.value[i], packet.ert};
 }
 
-void CommandGateway::note_answer(const Heard& packet, std::vector<StageReport>& stages) {
+void CommandGateway::note_answer(const DownlinkedPacket& packet, std::vector<StageReport>& stages) {
     const auto argument = [&](std::string_view name) {
         const auto index = dictionary::field_index(dictionary_.packets[packet.decoded.packet], name);
         return index ? packet.decoded.value[*index] : std::nullopt;
@@ -65,7 +65,7 @@ void CommandGateway::note_answer(const Heard& packet, std::vector<StageReport>& 
     }
 }
 
-void CommandGateway::note_report(const Heard& packet, std::vector<StageReport>& stages) {
+void CommandGateway::note_report(const DownlinkedPacket& packet, std::vector<StageReport>& stages) {
     const auto& container = dictionary_.packets[packet.decoded.packet];
     for (auto& underway : underway_) {
         if (underway.report != &container) continue;

@@ -89,7 +89,7 @@ class CommandGateway {
     Uplink take_uplinks() { return std::exchange(uplinks_, {}); }
 
     /// A decoded packet that reached Earth.
-    struct Heard {
+    struct DownlinkedPacket {
         const dictionary::Decoded& decoded;
         std::span<const std::uint8_t> octets;
         bool live = false;  ///< false: from a recording
@@ -97,7 +97,7 @@ class CommandGateway {
         const dictionary::Event* event = nullptr;  ///< of an event report,
         std::string text{};                        ///< in words
     };
-    void receive(const Heard& packet, std::vector<StageReport>& stages);
+    void receive(const DownlinkedPacket& packet, std::vector<StageReport>& stages);
     /// Whether packets of a recording could still change a command's stages.
     bool awaits_answers() const { return !underway_.empty(); }
 
@@ -204,9 +204,9 @@ class CommandGateway {
     void hear_clcw(std::uint32_t word, Ert ert, std::vector<StageReport>& stages);
     void note_frames(Ert now, std::vector<StageReport>& stages);
     std::vector<LatestValue> latest(Ert now) const;
-    void note_channels(const Heard& packet);
-    void note_answer(const Heard& packet, std::vector<StageReport>& stages);
-    void note_report(const Heard& packet, std::vector<StageReport>& stages);
+    void note_channels(const DownlinkedPacket& packet);
+    void note_answer(const DownlinkedPacket& packet, std::vector<StageReport>& stages);
+    void note_report(const DownlinkedPacket& packet, std::vector<StageReport>& stages);
     void append(const Underway& underway, const std::vector<StageChange>& changes, std::vector<StageReport>& stages);
 
     const dictionary::Dictionary& dictionary_;

@@ -51,14 +51,14 @@ class Predictor {
 
   private:
     /// Time of an anchor as derived from firings.
-    struct Told {
+    struct DerivedAnchor {
         MaybeOffset e_s;                    ///< the earliest that a firing implies: a timepoint may fire later than due
         std::optional<TimepointId> firing;  ///< the one that implies it
         double at_e_s = never_s;            ///< when the first timepoint with this anchor was triggered
         double passed_e_s = never_s;        ///< when the first timepoint after one with this anchor was triggered
     };
 
-    std::optional<TimelineKnowledge::Heard> heard(std::size_t timepoint) const {
+    std::optional<TimelineKnowledge::Firing> heard(std::size_t timepoint) const {
         return at_or_none(known_.heard, timepoint);
     }
 
@@ -221,7 +221,7 @@ class Predictor {
     const Dictionary& dictionary_;
     const TimelineKnowledge& known_;
     std::vector<timeline::Offsets> offsets_;  ///< by timepoint
-    std::vector<Told> told_;                  ///< by anchor
+    std::vector<DerivedAnchor> told_;         ///< by anchor
     std::vector<MaybeOffset> before_;         ///< by anchor: the prediction before anything was heard of it
     std::optional<std::size_t> last_design_;  ///< the last anchor with a time in the design
     TimelinePrediction prediction_;
@@ -250,7 +250,7 @@ std::vector<MaybeOffset> predicted_from_entry_s(const Dictionary& dictionary,
     TimelineKnowledge known;
     known.design_e_s = design_e_s;
     for (const auto& e_s : heard_e_s)
-        known.heard.push_back(e_s ? std::optional{TimelineKnowledge::Heard{*e_s, *e_s}} : std::nullopt);
+        known.heard.push_back(e_s ? std::optional{TimelineKnowledge::Firing{*e_s, *e_s}} : std::nullopt);
     return times_of(predict(dictionary, known));
 }
 

@@ -22,7 +22,7 @@ struct OffsetChange {
 
 /// Ground's knowledge of a timeline at one instant.
 struct TimelineKnowledge {
-    struct Heard {
+    struct Firing {
         double triggered_e_s = 0.0, fired_e_s = 0.0;
     };
     struct Report {
@@ -30,7 +30,7 @@ struct TimelineKnowledge {
         double at_e_s = 0.0;  ///< when flight wrote the report
     };
     std::vector<MaybeOffset> design_e_s;         ///< by anchor: its time in the design (predicted_anchors.csv)
-    std::vector<std::optional<Heard>> heard;     ///< by timepoint; may be shorter than the timeline
+    std::vector<std::optional<Firing>> heard;    ///< by timepoint; may be shorter than the timeline
     std::vector<std::optional<Report>> reports;  ///< by anchor: the time that flight reports for it; may be shorter
     std::vector<OffsetChange> changes;           ///< oldest first
     MaybeOffset clock_zero_e_s;                  ///< zero of the spacecraft clock, which is the time of the root anchor

@@ -20,9 +20,9 @@ void add_step(TouchdownJudgement& judged, std::string_view name, StepState state
     judged.steps.push_back({std::string{name}, state, std::move(words), since});
 }
 
-void add_told_step(const TouchdownFacts& facts, std::vector<TouchdownFacts::Told> told, TouchdownJudgement& judged) {
+void add_told_step(const TouchdownFacts& facts, std::vector<TouchdownFacts::Report> told, TouchdownJudgement& judged) {
     constexpr std::string_view name = "touchdown told by the vehicle";
-    std::ranges::stable_sort(told, {}, &TouchdownFacts::Told::sclk);
+    std::ranges::stable_sort(told, {}, &TouchdownFacts::Report::sclk);
     const auto& first = told.front();
     const auto when = [&](Sclk sclk) { return from_entry_tenths_text(sclk - facts.entry); };
     if (facts.flag && facts.flag->value == 0.0 && facts.flag->sclk - first.sclk > touchdown_gap_s)

@@ -33,7 +33,7 @@ inline constexpr double touchdown_gap_s = 3.0;   ///< chosen: the channel used h
 
 /// The facts received by an instant. Times are by the vehicle's clock.
 struct TouchdownFacts {
-    struct Told {
+    struct Report {
         Sclk sclk;
         std::string words;  ///< "timepoint touchdown by UHF"
     };
@@ -51,7 +51,7 @@ struct TouchdownFacts {
         std::string words;
     };
     Sclk entry, now;
-    std::vector<Told> told;           ///< in any order
+    std::vector<Report> told;         ///< in any order
     std::string flag_name;            ///< of the channel that tells it
     std::optional<Flag> flag;         ///< its newest sample
     bool rover_imu_known = false;     ///< the dictionary has its channels

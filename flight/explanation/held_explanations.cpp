@@ -6,7 +6,7 @@
 
 namespace aeolis::flight {
 
-HeldExplanations::Told& HeldExplanations::of(Decision decision) {
+HeldExplanations::LastSent& HeldExplanations::of(Decision decision) {
     const auto index = static_cast<std::size_t>(decision);
     AEOLIS_CHECK(index < decisions_max);
     return told_[index];
@@ -19,7 +19,7 @@ void HeldExplanations::held(Decision decision, std::uint16_t subject, std::span<
         second_ = second;
         told_in_second_ = 0;
     }
-    Told& told = of(decision);
+    LastSent& told = of(decision);
     if (told.subject != subject) told = {MaybeTime{}, subject, 0};
     const bool told_lately = told.when.defined() && now - *told.when.get() < again_after_s;
     if (told_lately || told_in_second_ == each_second_max) {

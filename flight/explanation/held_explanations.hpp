@@ -28,15 +28,15 @@ class HeldExplanations {
     std::uint16_t take_suppressed(Decision decision);
 
   private:
-    struct Told {
+    struct LastSent {
         MaybeTime when;
         std::uint16_t subject = 0;
         std::uint16_t suppressed = 0;
     };
     static constexpr std::size_t decisions_max = 64;  // chosen: three times the dictionary's; checked
-    Told& of(Decision decision);
+    LastSent& of(Decision decision);
 
-    std::array<Told, decisions_max> told_{};
+    std::array<LastSent, decisions_max> told_{};
     Sclk second_;
     std::uint32_t told_in_second_ = 0;
 };

@@ -261,7 +261,7 @@ Result<v1::TouchdownReport> touchdown(archive::Reader& reader, archive::RunId ru
     if (auto done = of.add_samples(facts); !done) return done.error();
     if (facts.told.empty()) return v1::TouchdownReport{};
     facts.entry = Sclk{state->entry_sclk()};
-    const Sclk first = std::ranges::min(facts.told, {}, &TouchdownFacts::Told::sclk).sclk;
+    const Sclk first = std::ranges::min(facts.told, {}, &TouchdownFacts::Report::sclk).sclk;
     if (auto done = of.add_rover_imu(first, facts); !done) return done.error();
     if (auto done = of.add_silences(facts); !done) return done.error();
     const auto newest = now ? Result<Ert>{*now} : reader.newest_ert(run);

@@ -64,10 +64,11 @@ class Collector {
     }
 
     Result<void> opened() {
-        if (const auto made = engine_.make_stream(campaign_stream, "aeolis.campaigns.>", Keep::newest); !made)
+        if (const auto made = engine_.make_stream(campaign_stream, "aeolis.campaigns.>", Retention::newest); !made)
             return made;
-        if (const auto made = engine_.make_stream(case_stream, "aeolis.cases.>", Keep::until_taken); !made) return made;
-        if (const auto made = engine_.make_stream(answer_stream, "aeolis.answers.>", Keep::until_taken); !made)
+        if (const auto made = engine_.make_stream(case_stream, "aeolis.cases.>", Retention::until_taken); !made)
+            return made;
+        if (const auto made = engine_.make_stream(answer_stream, "aeolis.answers.>", Retention::until_taken); !made)
             return made;
         // What an earlier call left in the queue is queued anew below.
         if (const auto cleared = engine_.clear(case_stream, subjects_.cases); !cleared) return cleared;

@@ -202,19 +202,19 @@ Listening::Listening(Listening&&) noexcept = default;
 Listening& Listening::operator=(Listening&&) noexcept = default;
 Listening::~Listening() = default;
 
-Result<std::optional<Heard>> Listening::next(std::chrono::milliseconds wait) {
+Result<std::optional<Message>> Listening::next(std::chrono::milliseconds wait) {
     natsMsg* came = nullptr;
     const auto status = natsSubscription_NextMsg(&came, state_->subscription.get(), wait.count());
     const Message message{came};
-    if (status == NATS_TIMEOUT) return std::optional<Heard>{};
+    if (status == NATS_TIMEOUT) return std::optional<Message>{};
     if (status != NATS_OK && status != NATS_SLOW_CONSUMER)
         return Error{fmt::format("{}: {}: {}", state_->engine, state_->subject, text_of(status, {}))};
-    if (came == nullptr) return std::optional<Heard>{};
+    if (came == nullptr) return std::optional<Message>{};
     const char* const answer_to = natsMsg_GetReply(came);
-    return std::optional{Heard{natsMsg_GetSubject(came),
-                               {natsMsg_GetData(came), static_cast<std::size_t>(natsMsg_GetDataLength(came))},
-                               answer_to != nullptr ? answer_to : "",
-                               natsMsg_IsNoResponders(came)}};
+    return std::optional{Message{natsMsg_GetSubject(came),
+                                 {natsMsg_GetData(came), static_cast<std::size_t>(natsMsg_GetDataLength(came))},
+                                 answer_to != nullptr ? answer_to : "",
+                                 natsMsg_IsNoResponders(came)}};
 }
 
 struct Engine::State {
@@ -302,17 +302,17 @@ bool Engine::connected() const {
     return natsConnection_Status(state_->connection.get()) == NATS_CONN_STATUS_CONNECTED;
 }
 
-Result<void> Engine::make_stream(const std::string& stream, const std::string& subjects, Keep keep) {
+Result<void> Engine::make_stream(const std::string& stream, const std::string& subjects, Retention retention) {
     jsStreamConfig config;
     jsStreamConfig_Init(&config);
     config.Name = stream.c_str();
     const char* list[]{subjects.c_str()};
     config.Subjects = list;
     config.SubjectsLen = 1;
-    config.Retention = keep == Keep::until_taken ? js_WorkQueuePolicy : js_LimitsPolicy;
+    config.Retention = retention == Retention::until_taken ? js_WorkQueuePolicy : js_LimitsPolicy;
     config.Storage = js_FileStorage;
     config.Replicas = state_->replicas;
-    if (keep == Keep::newest)
+    if (retention == Retention::newest)
         config.MaxMsgsPerSubject = 1;
     else
         config.MaxAge = forgotten_after_s * second_ns;

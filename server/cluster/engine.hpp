@@ -34,7 +34,7 @@ struct EngineAddress {
 std::string shown(const EngineAddress& address);
 
 /// How long a stream keeps its messages.
-enum class Keep : std::uint8_t {
+enum class Retention : std::uint8_t {
     newest,       ///< the newest of each subject
     until_taken,  ///< each until its one consumer has taken it
     all           ///< every message, unless an administrator has set limits
@@ -89,7 +89,7 @@ class Consumer {
 };
 
 /// A message that no stream keeps.
-struct Heard {
+struct Message {
     std::string subject, octets;
     std::string answer_to;      ///< subject of the answer; empty: none is wanted
     bool nobody_there = false;  ///< the engine says that nobody listens to what was asked
@@ -103,7 +103,7 @@ class Listening {
     ~Listening();
 
     /// The next message, after `wait` at the latest; none: there was none.
-    Result<std::optional<Heard>> next(std::chrono::milliseconds wait);
+    Result<std::optional<Message>> next(std::chrono::milliseconds wait);
 
   private:
     friend class Engine;
@@ -130,7 +130,7 @@ class Engine {
     bool connected() const;
 
     /// Makes the stream of these subjects unless there is one of this name, which must then be of the same form.
-    Result<void> make_stream(const std::string& stream, const std::string& subjects, Keep keep);
+    Result<void> make_stream(const std::string& stream, const std::string& subjects, Retention retention);
     /// Publishes a message, which is stored when this returns.
     Result<void> publish(const std::string& subject, std::string_view octets);
     /// Publishes several messages, which are all stored when this returns. After an Error, any of them may be stored.

@@ -161,8 +161,8 @@ class Publisher::Thread {
         }
         if (!engine_->connected()) return Error{shown(settings_.engine) + ": the engine is away"};
         if (ready_) return {};
-        if (auto made = engine_->make_stream(run_stream, all_runs, Keep::all); !made) return made;
-        if (auto made = engine_->make_stream(origin_stream, all_origins, Keep::newest); !made) return made;
+        if (auto made = engine_->make_stream(run_stream, all_runs, Retention::all); !made) return made;
+        if (auto made = engine_->make_stream(origin_stream, all_origins, Retention::newest); !made) return made;
         auto facts = engine_->facts(run_stream);
         if (!facts) return facts.error();
         if (facts->made != stream_) {

@@ -79,7 +79,7 @@ class RequestGate::Thread {
         return send_answers();
     }
 
-    void take(const Heard& heard) {
+    void take(const Message& heard) {
         auto taken = check_.take(heard.octets, RequestCheck::Clock::now());
         {
             const std::scoped_lock lock{mutex_};

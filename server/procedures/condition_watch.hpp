@@ -65,7 +65,7 @@ class ConditionWatch {
 
   private:
     /// The newest of a channel, and since when each comparison has held without a gap.
-    struct Heard {
+    struct Newest {
         std::optional<double> value;
         Ert received;
     };
@@ -81,7 +81,7 @@ class ConditionWatch {
     const dictionary::Dictionary* dictionary_;
     std::vector<Watched> watched_;
     std::unordered_map<ChannelId, std::vector<std::size_t>> by_channel_;
-    std::unordered_map<ChannelId, Heard> heard_;            ///< of the channels in conditions
+    std::unordered_map<ChannelId, Newest> heard_;           ///< of the channels in conditions
     std::unordered_map<EvrId, std::optional<Ert>> events_;  ///< of the events in conditions: the last receipt
     std::optional<EntryPrediction> prediction_;
     Ert now_;

@@ -61,12 +61,12 @@ class HeardFlight {
     };
     const std::vector<Fired>& fired() const { return fired_; }
 
-    struct Told {
+    struct Warning {
         std::string name;  ///< of the event
         Sclk sclk;
     };
     /// Events of a warning's level and above, in the order of their arrival.
-    const std::vector<Told>& warnings() const { return warnings_; }
+    const std::vector<Warning>& warnings() const { return warnings_; }
     /// Whether the radar had locked by then: from there on the height above ground is measured.
     bool radar_locked_by(Sclk sclk) const;
 
@@ -85,7 +85,7 @@ class HeardFlight {
     std::optional<NavigatedState> newest_;
     std::vector<TimelineStand> stands_;
     std::vector<Fired> fired_;
-    std::vector<Told> warnings_;
+    std::vector<Warning> warnings_;
     std::optional<Sclk> locked_;  ///< when the radar first had
 };
 

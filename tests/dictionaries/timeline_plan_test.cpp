@@ -271,9 +271,9 @@ TEST_CASE("a timepoint that may be late does not bound do edl, and then follows 
     known.now_e_s = -1180.0;
     CHECK_FALSE(predicted().e_s);
     CHECK(predicted().unknown == Unknown::previous);
-    known.heard = {dictionary::TimelineKnowledge::Heard{-1168.0, -1167.5}};
+    known.heard = {dictionary::TimelineKnowledge::Firing{-1168.0, -1167.5}};
     CHECK(predicted().e_s == -1165.5);  // 2 s after the first
-    known.heard = {dictionary::TimelineKnowledge::Heard{-518'400.0, -518'399.5}};
+    known.heard = {dictionary::TimelineKnowledge::Firing{-518'400.0, -518'399.5}};
     CHECK(predicted().e_s == -10800.0);
 }
 

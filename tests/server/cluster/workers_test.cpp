@@ -305,7 +305,7 @@ TEST_CASE("answers that are none of the campaign's are refused, counted and neve
     forged.push_back(answer.SerializeAsString());
     {
         auto engine = connected(server);
-        REQUIRE(engine.make_stream(cluster::answer_stream, "aeolis.answers.>", cluster::Keep::until_taken));
+        REQUIRE(engine.make_stream(cluster::answer_stream, "aeolis.answers.>", cluster::Retention::until_taken));
         REQUIRE(engine.publish(cluster::CampaignSubjects{cluster::kind_of(identity), *queue}.answers, forged));
     }
     const WorkerThread worker{server, "worker", made_up_in(1ms)};
@@ -355,7 +355,7 @@ TEST_CASE("an engine that is away, has no JetStream or is none is named in one l
     if (!NatsServer::present()) return;
     const NatsServer plain{NatsServer::JetStream::absent};
     auto engine = connected(plain);
-    const auto made = engine.make_stream(cluster::case_stream, "aeolis.cases.>", cluster::Keep::until_taken);
+    const auto made = engine.make_stream(cluster::case_stream, "aeolis.cases.>", cluster::Retention::until_taken);
     REQUIRE_FALSE(made);
     CHECK(made.error().message ==
           plain.url() +
