@@ -5,16 +5,17 @@
 #include "server/api/body_parts.hpp"
 #include "server/api/query_text.hpp"
 #include "server/api/raw_export.hpp"
+#include "server/archive/run_instant.hpp"
 
 namespace aeolis::server {
 namespace {
 
-/// A time of reception in a query, UTC.
-Result<std::optional<Ert>> ert_of(const QueryText& query, const char* name) {
+/// A time of reception in a query. None when absent.
+Result<std::optional<Ert>> ert_of(const QueryText& query, const char* name, const v1::RunState& run) {
     const auto text = query.text(name);
     if (!text) return std::optional<Ert>{};
-    const auto ert = ert_from_text(*text);
-    if (!ert) return Error{std::string{name} + ": '" + *text + "' is no UTC time, such as 2012-219T05:10:47.4"};
+    const auto ert = archive::reception_of(*text, archive::clocks_of(run), name);
+    if (!ert) return ert.error();
     return std::optional{*ert};
 }
 
@@ -29,16 +30,17 @@ void Api::export_raw(const ApiRequest& call) {
         return call.respond(error_response(400, "of: '" + of + "' is neither octets nor packets"));
     wanted.packets = of == "packets";
     wanted.link = query->text("link").value_or("");
-    const auto from = ert_of(*query, "from"), to = ert_of(*query, "to");
-    if (!from) return call.respond(error_response(400, from.error()));
-    if (!to) return call.respond(error_response(400, to.error()));
-    wanted.from = *from;
-    wanted.to = *to;
     const auto format = query->text("format").value_or("pcap");
     ask(call, std::move(*query),
         [wanted, format, &queries = parts_.queries, asker = Asker{client_of(call.who), call.request.disconnected}](
-            archive::Reader& reader, archive::RunId run, const QueryText&) -> std::optional<HttpResponse> {
-            if (const auto state = reader.run(run); !state) return error_response(500, state.error());
+            archive::Reader& reader, archive::RunId run,
+            const QueryText& asked) mutable -> std::optional<HttpResponse> {
+            const auto state = reader.run(run);
+            if (!state) return error_response(500, state.error());
+            const auto from = ert_of(asked, "from", *state), to = ert_of(asked, "to", *state);
+            if (!from || !to) return error_response(400, (from ? to : from).error());
+            wanted.from = *from;
+            wanted.to = *to;
             auto begun = RawExport::begin(reader, run, wanted, format);
             if (!begun) return error_response(400, begun.error());
             auto pages = std::make_shared<RawExport>(std::move(*begun));

@@ -77,18 +77,36 @@ Result<Sclk> instant_of(std::string_view text, const v1::RunState& run, std::str
     return std::abs(tick - exact) < scet_text_s ? tick : exact;
 }
 
-Result<Ert> departure_of(std::string_view text, const RunClocks& clocks, std::string_view name) {
+namespace {
+
+/// The station's time of an instant: a UTC time alone, or after "ert:", is the station's own; one of the vehicle is
+/// `light_times` away from it.
+Result<Ert> at_station(std::string_view text, const RunClocks& clocks, std::string_view name, int light_times) {
     const auto read = read_instant(text, clocks.entry);
     if (!read) return no_instant(name, text);
     if (!read->sclk && read->by != WrittenInstant::By::scet) return Ert{read->utc.microseconds};
-    auto arrives = read->utc;
+    auto at_vehicle = read->utc;
     if (read->sclk) {
         if (std::abs(*read->sclk - clocks.correlation.sclk) > clock_s_max) return no_instant(name, text);
         if (clocks.correlation.scet == Scet{})
             return Error{std::string{name} + ": nobody knows which SCET the run has: a UTC time is wanted"};
-        arrives = clocks.correlation.scet_of(*read->sclk);
+        at_vehicle = clocks.correlation.scet_of(*read->sclk);
     }
-    return Ert{arrives.microseconds - light_us(clocks.light_time_s)};
+    return Ert{at_vehicle.microseconds + light_times * light_us(clocks.light_time_s)};
+}
+
+}  // namespace
+
+Result<Ert> departure_of(std::string_view text, const RunClocks& clocks, std::string_view name) {
+    return at_station(text, clocks, name, -1);
+}
+
+Result<Ert> reception_of(std::string_view text, const RunClocks& clocks, std::string_view name) {
+    return at_station(text, clocks, name, 1);
+}
+
+RunClocks clocks_of(const v1::RunState& run) {
+    return {correlation_of(run), Sclk{run.entry_sclk()}, run.light_time_s()};
 }
 
 }  // namespace aeolis::archive

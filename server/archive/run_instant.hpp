@@ -19,6 +19,7 @@ struct RunClocks {
     Sclk entry;
     double light_time_s = 0.0;
 };
+RunClocks clocks_of(const v1::RunState& run);
 
 /// Reads an instant of a run, as people write it: seconds of SCLK; SCET as scet_from_text() reads it, with "scet:"
 /// before it or not, converted by the run's clock correlation; "ert:" and the UTC time at which the instant is seen on
@@ -30,5 +31,9 @@ Result<Sclk> instant_of(std::string_view text, const v1::RunState& run, std::str
 /// time of the vehicle (SCLK, E+4:58, "scet:" and a UTC time) is that of its arrival there: it leaves a light time
 /// earlier. Errors as instant_of().
 Result<Ert> departure_of(std::string_view text, const RunClocks& clocks, std::string_view name);
+
+/// Reads the time at which something reaches the station, in the same forms: what is at the vehicle at a time of the
+/// vehicle reaches it a light time later. Errors as instant_of().
+Result<Ert> reception_of(std::string_view text, const RunClocks& clocks, std::string_view name);
 
 }  // namespace aeolis::archive

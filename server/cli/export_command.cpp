@@ -2,13 +2,13 @@
 #include "server/api/raw_export.hpp"
 #include "server/api/sample_text.hpp"
 #include "server/archive/reader.hpp"
+#include "server/archive/run_instant.hpp"
 #include "server/archive/sample_table.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/options.hpp"
 #include "server/cli/recorded_dictionary.hpp"
 #include "server/cli/shipped_paths.hpp"
 
-#include <charconv>
 #include <cstdio>
 #include <fmt/format.h>
 #include <memory>
@@ -29,21 +29,21 @@ struct ExportOptions {
     std::filesystem::path out;                ///< empty: standard output
 };
 
-/// Reads an end of a range of samples.
-Result<std::optional<double>> sclk_of(const char* name, const std::optional<std::string>& text) {
+/// Reads an end of a range of samples; none when left out.
+Result<std::optional<double>> sclk_of(const char* name, const std::optional<std::string>& text,
+                                      const v1::RunState& run) {
     if (!text) return std::optional<double>{};
-    double seconds = 0.0;
-    const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), seconds);
-    if (error != std::errc{} || end != text->data() + text->size())
-        return Error{fmt::format("{} {}: not a number of seconds", name, *text)};
-    return std::optional{seconds};
+    const auto sclk = archive::instant_of(*text, run, name);
+    if (!sclk) return sclk.error();
+    return std::optional{sclk->seconds};
 }
 
-/// Reads an end of a range of receptions.
-Result<std::optional<Ert>> ert_of(const char* name, const std::optional<std::string>& text) {
+/// Reads an end of a range of receptions; none when left out.
+Result<std::optional<Ert>> ert_of(const char* name, const std::optional<std::string>& text, const v1::RunState& run) {
     if (!text) return std::optional<Ert>{};
-    if (const auto ert = ert_from_text(*text)) return std::optional{*ert};
-    return Error{fmt::format("{} {}: not a UTC time, such as 2012-219T05:10:47.4", name, *text)};
+    const auto ert = archive::reception_of(*text, archive::clocks_of(run), name);
+    if (!ert) return ert.error();
+    return std::optional{*ert};
 }
 
 using Begin = std::function<Result<void>(const v1::RunState&, const dictionary::Dictionary&)>;
@@ -53,8 +53,6 @@ using Begin = std::function<Result<void>(const v1::RunState&, const dictionary::
 int each_row(const ExportOptions& options, const char* command, const Begin& begin,
              const archive::Reader::TakeSamples& take) {
     const auto said = [&](const Error& error) { return failed(fmt::format("{}: {}", command, error.message)); };
-    const auto from_s = sclk_of("--from", options.from), to_s = sclk_of("--to", options.to);
-    if (!from_s || !to_s) return failed((from_s ? to_s : from_s).error().message, 2);
     int exit_code = 0;
     const auto recorded = recorded_dictionary(options.of.shared.dictionary, options.of.xtce, exit_code);
     if (!recorded) return exit_code;
@@ -63,6 +61,8 @@ int each_row(const ExportOptions& options, const char* command, const Begin& beg
     const archive::RunId run{options.of.run.value_or(0)};
     const auto state = reader->run(run);
     if (!state) return said(state.error());
+    const auto from_s = sclk_of("--from", options.from, *state), to_s = sclk_of("--to", options.to, *state);
+    if (!from_s || !to_s) return failed((from_s ? to_s : from_s).error().message, 2);
     if (auto begun = begin(*state, recorded->dictionary); !begun) return said(begun.error());
     const auto done = reader->each_sample(run, options.channels, {*from_s, *to_s}, take);
     return done ? 0 : said(done.error());
@@ -100,15 +100,16 @@ class Output {
 /// Writes octets of links, or the packets found in them.
 int export_raw(const ExportOptions& options) {
     const auto said = [](const Error& error) { return failed("export: " + error.message); };
-    const auto from = ert_of("--from", options.from), to = ert_of("--to", options.to);
-    if (!from || !to) return failed((from ? to : from).error().message, 2);
     int exit_code = 0;
     const auto recorded = recorded_dictionary(options.of.shared.dictionary, options.of.xtce, exit_code);
     if (!recorded) return exit_code;
     auto reader = archive::Reader::open(options.of.archive, recorded->dictionary, recorded->other.get());
     if (!reader) return said(reader.error());
     const archive::RunId run{options.of.run.value_or(0)};
-    if (const auto state = reader->run(run); !state) return said(state.error());
+    const auto state = reader->run(run);
+    if (!state) return said(state.error());
+    const auto from = ert_of("--from", options.from, *state), to = ert_of("--to", options.to, *state);
+    if (!from || !to) return failed((from ? to : from).error().message, 2);
     auto pages = RawExport::begin(*reader, run, {options.packets, options.link, *from, *to},
                                   options.format.empty() ? "bin" : options.format);
     if (!pages) return said(pages.error());
@@ -189,8 +190,10 @@ void add_selection(CLI::App& command, ExportOptions& options) {
         .add_option("--channel,--channels", options.channels,
                     "names or aliases, separated by blanks or commas; all if left out")
         ->delimiter(',');
-    command.add_option("--from", options.from, "first SCLK [s]; for raw octets and packets, UTC of reception");
-    command.add_option("--to", options.to, "last SCLK [s], or UTC of reception");
+    command.add_option("--from", options.from,
+                       "first instant: SCLK [s], SCET, ert:UTC, or E+4:58; for raw octets and packets the time "
+                       "of reception: UTC, or one of those, a light time later");
+    command.add_option("--to", options.to, "last instant, likewise");
 }
 
 }  // namespace

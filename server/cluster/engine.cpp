@@ -202,19 +202,19 @@ Listening::Listening(Listening&&) noexcept = default;
 Listening& Listening::operator=(Listening&&) noexcept = default;
 Listening::~Listening() = default;
 
-Result<std::optional<Message>> Listening::next(std::chrono::milliseconds wait) {
+Result<std::optional<PlainMessage>> Listening::next(std::chrono::milliseconds wait) {
     natsMsg* came = nullptr;
     const auto status = natsSubscription_NextMsg(&came, state_->subscription.get(), wait.count());
     const Message message{came};
-    if (status == NATS_TIMEOUT) return std::optional<Message>{};
+    if (status == NATS_TIMEOUT) return std::optional<PlainMessage>{};
     if (status != NATS_OK && status != NATS_SLOW_CONSUMER)
         return Error{fmt::format("{}: {}: {}", state_->engine, state_->subject, text_of(status, {}))};
-    if (came == nullptr) return std::optional<Message>{};
+    if (came == nullptr) return std::optional<PlainMessage>{};
     const char* const answer_to = natsMsg_GetReply(came);
-    return std::optional{Message{natsMsg_GetSubject(came),
-                                 {natsMsg_GetData(came), static_cast<std::size_t>(natsMsg_GetDataLength(came))},
-                                 answer_to != nullptr ? answer_to : "",
-                                 natsMsg_IsNoResponders(came)}};
+    return std::optional{PlainMessage{natsMsg_GetSubject(came),
+                                      {natsMsg_GetData(came), static_cast<std::size_t>(natsMsg_GetDataLength(came))},
+                                      answer_to != nullptr ? answer_to : "",
+                                      natsMsg_IsNoResponders(came)}};
 }
 
 struct Engine::State {

@@ -89,7 +89,7 @@ class Consumer {
 };
 
 /// A message that no stream keeps.
-struct Message {
+struct PlainMessage {
     std::string subject, octets;
     std::string answer_to;      ///< subject of the answer; empty: none is wanted
     bool nobody_there = false;  ///< the engine says that nobody listens to what was asked
@@ -103,7 +103,7 @@ class Listening {
     ~Listening();
 
     /// The next message, after `wait` at the latest; none: there was none.
-    Result<std::optional<Message>> next(std::chrono::milliseconds wait);
+    Result<std::optional<PlainMessage>> next(std::chrono::milliseconds wait);
 
   private:
     friend class Engine;

@@ -79,7 +79,7 @@ class RequestGate::Thread {
         return send_answers();
     }
 
-    void take(const Message& heard) {
+    void take(const PlainMessage& heard) {
         auto taken = check_.take(heard.octets, RequestCheck::Clock::now());
         {
             const std::scoped_lock lock{mutex_};

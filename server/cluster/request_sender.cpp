@@ -147,7 +147,7 @@ class RequestSender::Thread {
         }
     }
 
-    void take(const Message& heard) {
+    void take(const PlainMessage& heard) {
         const auto sent = sent_.find(heard.subject);
         if (sent == sent_.end()) return;  // it came too late
         const auto answered = std::move(sent->second.answered);

@@ -4,6 +4,7 @@
 #include "common/check.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace aeolis::pipeline {
 
@@ -48,14 +49,17 @@ void SegmentBuilder::close(std::size_t packet, Source source, Open& open, archiv
     segment.position = open.position++;
     segment.first_packet_seq = open.first_packet_seq;
     segment.last_packet_seq = open.last_packet_seq;
-    segment.sclk_s = open.sclk_s;
     segment.channels = columns_.channels(packet);
     const std::size_t samples = open.sclk_s.size();
-    segment.values.resize(segment.channels.size() * samples);
-    for (std::size_t c = 0; c < segment.channels.size(); ++c)
-        std::copy_n(open.values.begin() + static_cast<std::ptrdiff_t>(c * segment_samples), samples,
-                    segment.values.begin() + static_cast<std::ptrdiff_t>(c * samples));
-    open.sclk_s.clear();
+    segment.sclk_s = std::exchange(open.sclk_s, {});
+    if (samples == segment_samples) {
+        segment.values = std::exchange(open.values, {});  // a copy would double the memory where many end together
+    } else {
+        segment.values.resize(segment.channels.size() * samples);
+        for (std::size_t c = 0; c < segment.channels.size(); ++c)
+            std::copy_n(open.values.begin() + static_cast<std::ptrdiff_t>(c * segment_samples), samples,
+                        segment.values.begin() + static_cast<std::ptrdiff_t>(c * samples));
+    }
     pyramid_.add(segment, batch.pyramid);
 }
 

@@ -16,8 +16,8 @@ namespace aeolis::pipeline {
 ///
 /// In       sampled packets in the order of their sequence numbers
 /// Out      each segment when full, with the pyramid blocks that it fills; the rest at seal()
-/// Memory   8 octets a value, at most segment_samples per packet and source: about 2 MB for the mission's dictionary;
-///          and the pyramid's open blocks
+/// Memory   8 octets a value, at most segment_samples per packet and source: about 2 MB for the mission's dictionary,
+///          given over to the batch with a full segment; and the pyramid's open blocks
 class SegmentBuilder {
   public:
     explicit SegmentBuilder(const archive::PacketColumns& columns);

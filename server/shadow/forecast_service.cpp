@@ -32,7 +32,7 @@ bool is(const archive::ForecastRecord& record, archive::RunId run, std::uint64_t
 Result<Assumption> assumption_of(const v1::ForecastRequest& request, const v1::RunState& run,
                                  const simulation::Scenario& scenario) {
     Assumption assumption;
-    const archive::RunClocks clocks{archive::correlation_of(run), Sclk{run.entry_sclk()}, run.light_time_s()};
+    const archive::RunClocks clocks = archive::clocks_of(run);
     for (int i = 0; i < request.commands_size(); ++i) {
         auto message = request.commands(i);
         message.set_armed(true);  // who assumes a command has armed and confirmed it

@@ -242,7 +242,7 @@ TEST_CASE("packets in frames with garbage between, over TCP in odd pieces, are a
     CHECK_THAT(follower.ask("/runs/1/raw?link=relay"),
                Catch::Contains("no octets of 'relay'; it has those of downlink"));
     CHECK_THAT(follower.ask("/runs/1/raw?format=csv"), Catch::Contains("'csv' is neither bin nor pcap"));
-    CHECK_THAT(follower.ask("/runs/1/raw?from=yesterday"), Catch::Contains("'yesterday' is no UTC time"));
+    CHECK_THAT(follower.ask("/runs/1/raw?from=yesterday"), Catch::Contains("'yesterday' is no instant"));
     CHECK_THAT(follower.ask("/runs/1/prediction"),
                Catch::Contains("\"state\":\"none\"") && Catch::Contains("run 1 has no scenario: it follows another"));
 }

@@ -265,7 +265,7 @@ TEST_CASE("a request that was overheard is no command when it comes again, also 
     REQUIRE(spy);
     auto heard = spy->listen("aeolis.requests.>");
     REQUIRE(heard);
-    std::optional<cluster::Message> overheard;
+    std::optional<cluster::PlainMessage> overheard;
     REQUIRE(comes([&] {
         REQUIRE(site.command("nina", R"({"command":"NO_OP"})").status == 202);
         const auto came = heard->next(1s);

@@ -78,6 +78,7 @@ RadarJudgement RadarFilter::on(const Parameters& parameters, const RadarSolution
         accepted_ == 0 || (near && !enough.holds) ? RadarJudgement::Verdict::taken : RadarJudgement::Verdict::believed;
     const bool whole = accepted_ == 0 || judgement.verdict == RadarJudgement::Verdict::believed;
     const double gain = whole ? 1.0 : parameters.radar_gain;
+    const double altitude_gain = whole ? 1.0 : parameters.radar_altitude_gain;
     refused_in_a_row_ = 0;
     ++accepted_;
 
@@ -86,7 +87,7 @@ RadarJudgement RadarFilter::on(const Parameters& parameters, const RadarSolution
     correction.v_M_mps = gain * residual_v;
     // A velocity error has also become an altitude error since the middle of the span.
     const double since_middle_s = now - solution.time;
-    correction.altitude_m = gain * residual_h_m + correction.v_M_mps.dot(up_M) * since_middle_s;
+    correction.altitude_m = altitude_gain * residual_h_m + correction.v_M_mps.dot(up_M) * since_middle_s;
     for (std::uint32_t i = 0; i < count_; ++i) {
         past_[i].altitude_m += correction.altitude_m + correction.v_M_mps.dot(up_M) * (past_[i].time - now);
         past_[i].v_MB_M += correction.v_M_mps;
