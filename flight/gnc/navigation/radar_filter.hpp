@@ -19,8 +19,9 @@
 // Memory   9 s of navigated history at 16 Hz
 // Faults   a solution whose residual is beyond the gate is refused and counted; after five refusals in a row, the
 //          next solution is taken whole
-// Source   R25; the gains are our assumption: the first solution is taken whole, later ones by a third. A solution's
-//          noise is halved, and an error decays in 3 s
+// Source   R25; the gains are our assumption: the first solution is taken whole. Of later ones a third of the velocity,
+//          which halves its noise, and 0.8 of the altitude, whose error is a part of the range: corrected late, it
+//          would be that of a greater height
 namespace aeolis::flight::gnc {
 
 struct RadarCorrection {
