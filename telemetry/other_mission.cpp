@@ -319,7 +319,7 @@ std::optional<std::string> OtherMission::decode(std::span<const std::uint8_t> pa
             into.texts.emplace_back(field->second, datum_text(value.calibrated));
         if (const auto* raw = std::get_if<std::uint64_t>(&value.raw))
             into.raw[field->second] = *raw;
-        else if (value.bits <= number_bits_max)
+        else if (value.bits > 0 && value.bits <= number_bits_max)  // an empty text has none
             into.raw[field->second] = read_bits(packet, value.position_bits, static_cast<unsigned>(value.bits));
     }
     return std::nullopt;

@@ -216,6 +216,30 @@ TEST_CASE("whole numbers of 64 bits and text are channels with their exact value
     CHECK_FALSE(decoded.timed);
 }
 
+TEST_CASE("a text of no octets is an empty channel, and what follows it is read", "[telemetry][downlink][R54]") {
+    const auto mission = mission_of(with_containers(
+        "<StringParameterType name='counted'><StringDataEncoding encoding='UTF-8'><Variable maxSizeInBits='64'>"
+        "<DynamicValue><ParameterInstanceRef parameterRef='n'/><LinearAdjustment slope='8'/></DynamicValue>"
+        "</Variable></StringDataEncoding></StringParameterType>",
+        "<Parameter name='n' parameterTypeRef='u8'/><Parameter name='name' parameterTypeRef='counted'/>"
+        "<Parameter name='after' parameterTypeRef='u8'/>",
+        "<SequenceContainer name='P'><EntryList><ParameterRefEntry parameterRef='header'/>"
+        "<ParameterRefEntry parameterRef='n'/><ParameterRefEntry parameterRef='name'/>"
+        "<ParameterRefEntry parameterRef='after'/></EntryList></SequenceContainer>"));
+    Decoded decoded;
+    REQUIRE_FALSE(mission->decode(test::hex("0000c000000100"
+                                            "07"),
+                                  decoded));
+    const auto& packet = mission->dictionary().packets[decoded.packet];
+    CHECK(decoded.value[*field_index(packet, "after")] == 7.0);
+    CHECK(decoded.raw[*field_index(packet, "name")] == 0);
+    REQUIRE_FALSE(mission->decode(test::hex("0000c000000302"
+                                            "4142"
+                                            "07"),
+                                  decoded));
+    CHECK(decoded.value[*field_index(packet, "after")] == 7.0);
+}
+
 TEST_CASE("limits and label alarms of the file are judged, exclusive ones and contexts too; what is not is named",
           "[telemetry][downlink][alarms][R54]") {
     const std::string types =
