@@ -112,14 +112,20 @@ class ContainerReader {
     void check(pugi::xml_node element, const PacketType& type, bool is_sized_by_type) {
         if (type.kind == PacketType::Kind::array && is_sized_by_type && type.last_indices.empty())
             parts_.report.fault(element, "the dimensions of the array are told nowhere: packets are read up to it");
-        if (const PacketType* found = uncoded(type))
+        std::vector<bool> seen(types_.size(), false);  // a type may hold itself
+        if (const PacketType* found = uncoded(type, seen))
             parts_.report.fault(element,
                                 "type " + in_quotes(found->name) + " has no data encoding: packets are read up to it");
     }
-    const PacketType* uncoded(const PacketType& type) const {
-        if (type.kind == PacketType::Kind::array) return uncoded(types_[type.element]);
+    const PacketType* uncoded(const PacketType& type, std::vector<bool>& seen) const {
+        const auto within = [&](std::size_t part) -> const PacketType* {
+            if (seen[part]) return nullptr;
+            seen[part] = true;
+            return uncoded(types_[part], seen);
+        };
+        if (type.kind == PacketType::Kind::array) return within(type.element);
         for (const auto& member : type.members)
-            if (const PacketType* found = uncoded(types_[member.type])) return found;
+            if (const PacketType* found = within(member.type)) return found;
         return type.uncoded ? &type : nullptr;
     }
 

@@ -264,8 +264,8 @@ CarrierTracker::Fitted CarrierTracker::fit_swerving(std::size_t middle) {
     if (best.seen < swerve_seen) return best;
     const Wiped& hop = hops_[middle];
     const double part_s = layout_.hop_s() / HopLayout::parts;
-    const double since_s =
-        static_cast<double>(hop.first_sample + layout_.hop_samples() / 2 - frequency_sample_) / layout_.rate_hz;
+    const auto mid_sample = hop.first_sample + layout_.hop_samples() / 2;
+    const double since_s = static_cast<double>(mid_sample - frequency_sample_) / layout_.rate_hz;
     for (int step = -swerve_steps; step <= swerve_steps; ++step) {
         const double bend = step * swerve_step_hzps2;
         const double hz = frequency_hz_ + rate_hzps_ * since_s + 0.5 * bend * since_s * since_s - hop.frequency_hz -

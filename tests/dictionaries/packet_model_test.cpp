@@ -66,12 +66,21 @@ TEST_CASE("a type takes from its base what it does not say itself", "[dictionary
     CHECK(type.coding.bits.intercept == 3.0);
 }
 
+TEST_CASE("a type without an encoding is a finding at its entry in a packet, and only there", "[dictionary]") {
+    const std::string derived = mission("<IntegerParameterType name='t'/>");
+    CHECK(Read{derived}.findings.empty());
+    std::string sent = derived;
+    sent.insert(sent.find("</TelemetryMetaData>"),
+                "\n<ContainerSet><SequenceContainer name='P'><EntryList>"
+                "<ParameterRefEntry parameterRef='p'/></EntryList></SequenceContainer></ContainerSet>");
+    CHECK(Read{sent}.has(4, "type 't' has no data encoding"));
+}
+
 TEST_CASE("each thing that is not supported is named with its line", "[dictionary]") {
     const auto found = [](const std::string& types, const std::string& words) {
         INFO(types);
         CHECK(Read{mission(types)}.has(2, words));
     };
-    found("<IntegerParameterType name='t'/>", "no data encoding");
     found("<IntegerParameterType name='t'><IntegerDataEncoding sizeInBits='99'/></IntegerParameterType>",
           "from 1 to 64");
     found("<FloatParameterType name='t'><FloatDataEncoding encoding='IBM' sizeInBits='32'/></FloatParameterType>",
