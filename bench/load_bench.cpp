@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The ground under its design load.
 //
-// Each second 2000 packets of 1.5 kB come and are kept as they came, decoded and stored, and sent to a thousand clients
-// that follow 30 channels at 20 Hz and every event; one client is stalled. First all follow the same channels, then each
-// has some of its own. The first, a middle and the last client are watched, and the stalled one when it reads again.
-// Then the same once more, while programs ask for every list of the API at once: of the run itself, of one with 4096
-// commands, and of what people made.
+// Each second 2000 packets of 1.5 kB are kept as they came, decoded, stored, and sent to a thousand clients that follow
+// 30 channels at 20 Hz and every event; one client is stalled. First all follow the same channels, then each has some of
+// its own. The first, a middle and the last client are watched, and the stalled one when it reads again. Then the same
+// once more, while programs ask for every list of the API at once: of the run itself, of one with 4096 commands, and of
+// what people made.
 
 #include "bench/list_readers.hpp"
 #include "bench/loopback_clients.hpp"

@@ -43,9 +43,14 @@ Error no_instant(std::string_view name, std::string_view text) {
                  "ert:2012-219T05:13:48, or E+4:58"};
 }
 
-std::optional<WrittenInstant> read_instant(std::string_view text, Sclk entry) {
+Result<WrittenInstant> read_instant(std::string_view text, Sclk entry, std::string_view name) {
     const auto written = with_plus(text);
-    if (const auto entry_s = seconds_from_entry(written)) return WrittenInstant{entry + *entry_s};
+    if (const auto entry_s = seconds_from_entry(written)) {
+        if (entry == Sclk{})
+            return Error{std::string{name} + ": '" + std::string{text} +
+                         "' counts from entry, and nobody knows when the run has it: SCLK or UTC is wanted"};
+        return WrittenInstant{entry + *entry_s};
+    }
     using By = WrittenInstant::By;
     const auto by = written.starts_with(ert_prefix)    ? By::ert
                     : written.starts_with(scet_prefix) ? By::scet
@@ -53,8 +58,8 @@ std::optional<WrittenInstant> read_instant(std::string_view text, Sclk entry) {
     const auto prefix = by == By::ert ? ert_prefix.size() : by == By::scet ? scet_prefix.size() : 0;
     if (const auto utc = scet_from_text(std::string_view{written}.substr(prefix)))
         return WrittenInstant{.utc = *utc, .by = by};
-    const auto sclk_s = number_of(text);
-    return sclk_s ? std::optional{WrittenInstant{Sclk{*sclk_s}}} : std::nullopt;
+    if (const auto sclk_s = number_of(text)) return WrittenInstant{Sclk{*sclk_s}};
+    return no_instant(name, text);
 }
 
 std::int64_t light_us(double light_time_s) {
@@ -64,8 +69,8 @@ std::int64_t light_us(double light_time_s) {
 }  // namespace
 
 Result<Sclk> instant_of(std::string_view text, const v1::RunState& run, std::string_view name) {
-    const auto read = read_instant(text, Sclk{run.entry_sclk()});
-    if (!read) return no_instant(name, text);
+    const auto read = read_instant(text, Sclk{run.entry_sclk()}, name);
+    if (!read) return read.error();
     if (read->sclk) return *read->sclk;
     const auto clock = correlation_of(run);
     if (clock.scet == Scet{})
@@ -82,8 +87,8 @@ namespace {
 /// The station's time of an instant: a UTC time alone, or after "ert:", is the station's own; one of the vehicle is
 /// `light_times` away from it.
 Result<Ert> at_station(std::string_view text, const RunClocks& clocks, std::string_view name, int light_times) {
-    const auto read = read_instant(text, clocks.entry);
-    if (!read) return no_instant(name, text);
+    const auto read = read_instant(text, clocks.entry, name);
+    if (!read) return read.error();
     if (!read->sclk && read->by != WrittenInstant::By::scet) return Ert{read->utc.microseconds};
     auto at_vehicle = read->utc;
     if (read->sclk) {

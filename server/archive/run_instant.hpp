@@ -16,14 +16,14 @@ inline constexpr std::string_view scet_prefix = "scet:";
 /// What is needed to find an instant of a run in its clocks.
 struct RunClocks {
     ClockCorrelation correlation;  ///< scet 0: nobody knows it
-    Sclk entry;
+    Sclk entry;                    ///< 0: nobody knows it
     double light_time_s = 0.0;
 };
 RunClocks clocks_of(const v1::RunState& run);
 
 /// Reads an instant of a run, as people write it: seconds of SCLK; SCET as scet_from_text() reads it, with "scet:"
 /// before it or not, converted by the run's clock correlation; "ert:" and the UTC time at which the instant is seen on
-/// Earth; or a time from entry, E+4:58.
+/// Earth; or a time from entry, E+4:58, which is an Error where nobody knows when entry is.
 /// @param name  of what is read, for the Error
 Result<Sclk> instant_of(std::string_view text, const v1::RunState& run, std::string_view name);
 

@@ -84,7 +84,7 @@ Result<void> recognise(const std::vector<Recording>& recordings, telemetry::Fore
 class Ingest {
   public:
     Ingest(const IngestOptions& options, telemetry::ForeignStation station, PipelineThread& pipeline)
-        : options_(options), station_(std::move(station)), pipeline_(pipeline), pace_(options.pace) {}
+        : options_(options), station_(std::move(station)), delivery_(pipeline), pace_(options.pace) {}
 
     Result<void> add(const Recording& recording, const std::string& name) {
         bool empty = true;
@@ -92,10 +92,10 @@ class Ingest {
             empty = empty && piece.octets.empty();
             return take(piece);
         });
-        if (!unused.empty()) fault(name + ": " + unused);
-        if (empty) fault(name + ": no octets of a link are in it");
+        if (!unused.empty()) delivery_.fault(name + ": " + unused);
+        if (empty) delivery_.fault(name + ": no octets of a link are in it");
         if (station_.lost()) collect(station_.end(now_));  // the next recording begins with a packet
-        return hand_over();
+        return delivery_.hand_over();
     }
 
     /// Ends the stream and hands over the totals. False when it was not as it should be.
@@ -104,36 +104,31 @@ class Ingest {
         auto totals = station_.totals(now_);
         const auto faults = station_.ledger().faults_since(totals);
         fmt::print("{} packets of {} octets\n", packets_, totals.counters.octets);
-        if (!faults.empty()) fault(faults);
+        if (!faults.empty()) delivery_.fault(faults);
         if (const auto stray = station_.stray_octets(); stray > 0)
-            fault(fmt::format("{} octets skipped that are neither good frames nor fill", stray));
+            delivery_.fault(fmt::format("{} octets skipped that are neither good frames nor fill", stray));
         if (packets_ + totals.packets.idle_packets == 0)
             if (const auto words = nothing_found(options_.format, totals.counters, totals.packets,
                                                  station_.ledger().heard_sequences());
                 !words.empty())
-                fault(words);
-        delivery_.links.push_back(std::move(totals));
-        if (auto done = hand_over(); !done) return done.error();
-        return faults_ == 0;
+                delivery_.fault(words);
+        delivery_.next.links.push_back(std::move(totals));
+        if (auto done = delivery_.hand_over(); !done) return done.error();
+        return delivery_.is_clean();
     }
 
   private:
-    void fault(const std::string& words) {
-        ++faults_;
-        fmt::print(stderr, "{}\n", words);
-    }
-
     bool take(const RecordedPiece& piece) {
         pace_.wait_for(piece.ert);
         if (!began_) {
             began_ = true;
-            delivery_.entries.emplace_back(
+            delivery_.next.entries.emplace_back(
                 telemetry::LinkState{telemetry::downlink_link, piece.ert, true, "recorded", false});
         }
         if (piece.ert.microseconds - passed_.microseconds >= microseconds_a_second) {
             passed_ = piece.ert;
-            delivery_.entries.emplace_back(telemetry::EarthTime{piece.ert});
-            delivery_.links.push_back(station_.totals(piece.ert));
+            delivery_.next.entries.emplace_back(telemetry::EarthTime{piece.ert});
+            delivery_.next.links.push_back(station_.totals(piece.ert));
         }
         now_ = piece.ert;
         telemetry::Downlink downlink;
@@ -145,34 +140,28 @@ class Ingest {
         if (unchecked_octets_ >= octets_between_checks) {
             unchecked_octets_ = 0;
             if (segments_.add(station_.totals(piece.ert).packets)) {
-                fault(
+                delivery_.fault(
                     fmt::format("stopped: more than {} segments in a row are of no packet (zeros?); look at --format, "
                                 "and whether this is the right file",
                                 UselessSegments::in_a_row_max));
                 return false;
             }
         }
-        const bool due = delivery_.entries.size() >= ingest_delivery_entries || pace_.waits();
-        return !due || hand_over().ok();
+        const bool due = delivery_.next.entries.size() >= ingest_delivery_entries || pace_.waits();
+        return !due || delivery_.hand_over().ok();
     }
 
     void collect(telemetry::Received& received) {
         packets_ += received.packets.size();
-        delivery_.add(std::move(received));
-    }
-
-    Result<void> hand_over() {
-        if (pipeline_.deliver(std::exchange(delivery_, {}))) return {};
-        return Error{pipeline_.fault()};
+        delivery_.next.add(std::move(received));
     }
 
     const IngestOptions& options_;
     telemetry::ForeignStation station_;
-    PipelineThread& pipeline_;
-    Delivery delivery_;
+    IngestDelivery delivery_;
     RecordedPace pace_;
     Ert now_, passed_;
-    std::uint64_t packets_ = 0, faults_ = 0;
+    std::uint64_t packets_ = 0;
     UselessSegments segments_;
     std::size_t unchecked_octets_ = 0;
     bool began_ = false;
@@ -306,8 +295,8 @@ void add_ingest_command(CLI::App& program, int& exit_code) {
                            "the link that the octets are of, such as uhf_live or relay; of a capture of several given "
                            "again and again, with the port of each: uhf_live=4200");
         command.add_option("--scenario", options->radio.scenario,
-                           "file or name of the scenario whose entry, clocks and light time hold; without it entry "
-                           "stands for the first packet, and the clock is the dictionary's");
+                           "file or name of the scenario whose entry, clocks and light time hold; without it nobody "
+                           "knows when entry is, and the clock is the dictionary's");
         command.add_option("--scenarios", options->radio.shared.scenarios, "directory of the scenarios")
             ->capture_default_str();
     });

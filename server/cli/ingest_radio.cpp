@@ -3,7 +3,7 @@
 
 #include "common/space_packet.hpp"
 #include "server/base/wall_clock.hpp"
-#include "server/pipeline/pipeline_thread.hpp"
+#include "server/cli/ingest_delivery.hpp"
 #include "server/rehearsal/scripted_landing.hpp"
 #include "telemetry/decoded_packet.hpp"
 #include "telemetry/station/ground_station.hpp"
@@ -200,7 +200,6 @@ Times times_of(const std::optional<simulation::Scenario>& scenario, const dictio
     auto& start = times.start;
     start.start = first;
     if (const auto* known = dictionary.clock_at(first)) start.correlation = *known;
-    start.entry = first;
     if (scenario) {
         start.correlation = clock_of(*scenario, dictionary);
         start.entry = scenario->entry_sclk;
@@ -213,7 +212,7 @@ Times times_of(const std::optional<simulation::Scenario>& scenario, const dictio
 class RadioIngest {
   public:
     RadioIngest(double light_time_s, double pace, const dictionary::Dictionary& dictionary, PipelineThread& pipeline)
-        : reception_(light_time_s), pace_(pace), decoder_(dictionary), progress_(dictionary), pipeline_(pipeline) {}
+        : reception_(light_time_s), pace_(pace), decoder_(dictionary), progress_(dictionary), delivery_(pipeline) {}
 
     Result<void> take(const LinkSources& sources) {
         for (LinkSource* source = earliest(sources); source != nullptr; source = earliest(sources)) {
@@ -230,8 +229,8 @@ class RadioIngest {
             empty = empty && piece.octets.empty();
             return true;
         });
-        if (!unused.empty()) fault(name + ": " + unused);
-        if (empty) fault(name + ": no octets of a link are in it");
+        if (!unused.empty()) delivery_.fault(name + ": " + unused);
+        if (empty) delivery_.fault(name + ": no octets of a link are in it");
     }
 
     /// Hands over the totals. False when it was not as it should be.
@@ -241,43 +240,38 @@ class RadioIngest {
         for (const auto& [link, port] : links) {
             const auto found = std::ranges::find(totals, link.name, &telemetry::LinkTotals::link);
             if (found == totals.end()) {
-                fault(link.name + ": no octets of it are there");
+                delivery_.fault(link.name + ": no octets of it are there");
                 continue;
             }
             fmt::print("{}: {} packets of {} octets\n", link.name, packets_[link.name], found->counters.octets);
             if (const auto faults = telemetry::LinkLedger{link.name}.faults_since(*found); !faults.empty())
-                fault(link.name + ": " + faults);
+                delivery_.fault(link.name + ": " + faults);
         }
         for (const auto& link : reception_.station().links())
             if (const auto stray = link.pltus.stray_octets(); stray > 0)
-                fault(
+                delivery_.fault(
                     fmt::format("{}: {} octets skipped that are neither good frames nor fill", link.link.name, stray));
         const auto& files = reception_.station().recording();
         if (files.refused() + reception_.station().unreadable_file_octets() > 0)
-            fault(fmt::format("{} file units refused, {} octets of files unreadable", files.refused(),
-                              reception_.station().unreadable_file_octets()));
+            delivery_.fault(fmt::format("{} file units refused, {} octets of files unreadable", files.refused(),
+                                        reception_.station().unreadable_file_octets()));
         if (files.files_under_way() > 0)
-            fault(fmt::format("{} files of the recording on board are not whole", files.files_under_way()));
-        delivery_.links = std::move(totals);
+            delivery_.fault(fmt::format("{} files of the recording on board are not whole", files.files_under_way()));
+        delivery_.next.links = std::move(totals);
         if (auto done = hand_over(); !done) return done.error();
-        return faults_ == 0;
+        return delivery_.is_clean();
     }
 
   private:
-    void fault(const std::string& words) {
-        ++faults_;
-        fmt::print(stderr, "{}\n", words);
-    }
-
     Result<void> take(const telemetry::Link& link, const RecordedPiece& piece) {
         pace_.wait_for(piece.ert);
         pass_to(piece.ert);
         if (!packets_.contains(link.name)) {
             packets_[link.name] = 0;
-            delivery_.entries.emplace_back(telemetry::LinkState{link, piece.ert, true, "recorded", false});
+            delivery_.next.entries.emplace_back(telemetry::LinkState{link, piece.ert, true, "recorded", false});
         }
         reception_.receive(link, piece, [&](telemetry::Received& received) { collect(received); });
-        const bool due = delivery_.entries.size() >= radio_delivery_entries || pace_.waits();
+        const bool due = delivery_.next.entries.size() >= radio_delivery_entries || pace_.waits();
         return due ? hand_over() : Result<void>{};
     }
 
@@ -288,9 +282,9 @@ class RadioIngest {
         const std::int64_t seconds =
             std::min((ert.microseconds - passed_.microseconds) / radio_second_us, seconds_told_max);
         for (std::int64_t left = packets_.empty() ? 1 : seconds; left-- > 0;)
-            delivery_.entries.emplace_back(telemetry::EarthTime{Ert{ert.microseconds - left * radio_second_us}});
+            delivery_.next.entries.emplace_back(telemetry::EarthTime{Ert{ert.microseconds - left * radio_second_us}});
         passed_ = ert;
-        delivery_.links = reception_.station().link_totals(ert);
+        delivery_.next.links = reception_.station().link_totals(ert);
     }
 
     void collect(telemetry::Received& received) {
@@ -302,24 +296,21 @@ class RadioIngest {
             if (decoded->refusal.empty()) progress_.note(decoded->content);
             packet.decoded = std::move(decoded);
         }
-        delivery_.add(std::move(received));
+        delivery_.next.add(std::move(received));
     }
 
     Result<void> hand_over() {
-        delivery_.relay_progress = progress_.fraction(reception_.station().recording());
-        if (pipeline_.deliver(std::exchange(delivery_, {}))) return {};
-        return Error{pipeline_.fault()};
+        delivery_.next.relay_progress = progress_.fraction(reception_.station().recording());
+        return delivery_.hand_over();
     }
 
     Reception reception_;
     RecordedPace pace_;
     telemetry::PacketDecoder decoder_;
     telemetry::RecordingProgress progress_;
-    PipelineThread& pipeline_;
-    Delivery delivery_;
+    IngestDelivery delivery_;
     Ert passed_;
     std::map<std::string, std::uint64_t> packets_;  ///< by link
-    std::uint64_t faults_ = 0;
 };
 
 }  // namespace
@@ -361,6 +352,9 @@ int ingest_radio(IngestRadioOptions options) {
     auto [start, light_time_s] = times_of(scenario, *dictionary, *first);
     const Ert own{start.correlation.scet_of(*first).microseconds +
                   static_cast<std::int64_t>(light_time_s * radio_second_us)};
+    if (!told && !files->recordings().front().is_capture())
+        fmt::print(stderr, "{}: taken for received at {}, by the first packet's own time: no times are in it\n",
+                   name.string(), day_of_year_text(own));
     sources = sources_of(options, *links, told.value_or(own));  // from their beginning
     if (!sources) return failed(sources.error().message, 2);
 

@@ -67,6 +67,24 @@ TEST_CASE("corrections once a second of averages over five do not ring", "[gnc][
     CHECK(largest_undershoot_m > -4.0);
 }
 
+TEST_CASE("a range that is short by a fraction leaves an error of the height flown in the last seconds, no more",
+          "[gnc][R25]") {
+    constexpr double fraction = -0.017, rate_mps = 20.0;
+    Descent descent;
+    descent.rate_mps = rate_mps;
+    descent.truth_m = 1000.0;
+    descent.fly(6.0);
+    for (int i = 0; i < 30; ++i) {
+        descent.update(fraction * (descent.truth_m + 2.5 * rate_mps));
+        descent.fly(1.0);
+    }
+    // The average lags 2.5 s; the gain and a solution a second may add 2 s.
+    const double excess_m = std::abs(descent.error_m) - std::abs(fraction) * descent.truth_m;
+    CHECK(descent.error_m < 0.0);
+    CHECK(excess_m < std::abs(fraction) * rate_mps * 4.5);
+    CHECK(excess_m > std::abs(fraction) * rate_mps * 2.0);
+}
+
 TEST_CASE("a wild solution is refused, five in a row are believed", "[gnc][R25][R38]") {
     Descent descent;
     descent.fly(6.0);

@@ -1276,6 +1276,13 @@ TEST_CASE("the octets of a landing's radio link become a run with the packets, v
     CHECK_FALSE(std::filesystem::exists(folder / "d.db"));
     CHECK_THAT(call(ingest + path("d.db") + path("all.pcap") + " --link uhf_live", 1),
                Catch::Contains("say which by --link NAME=PORT"));
+    // Without a scenario nobody knows when entry is, and no time of reception is in the file.
+    CHECK_THAT(call("ingest --link uhf_live --archive" + path("e.db") + path("u.bin"), 1),
+               Catch::Contains("by the first packet's own time"));
+    CHECK_THAT(call("export --run 1 --channel altitude_m --from E+0 --archive" + path("e.db"), 2),
+               Catch::Contains("counts from entry, and nobody knows"));
+    const auto lines = call("export --run 1 --channel altitude_m --archive" + path("e.db"));
+    CHECK(lines.size() > 1000);
     // A frame damaged on the way, and the end cut off.
     auto damaged = text_of("u.bin");
     for (std::size_t at = 20'000; at < 20'020; ++at) damaged[at] = static_cast<char>(~damaged[at]);

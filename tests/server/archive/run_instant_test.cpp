@@ -51,7 +51,17 @@ TEST_CASE("a run whose SCET nobody knows has times of reception in UTC alone", "
     v1::RunState run;
     run.set_entry_sclk(entry_s);
     CHECK(reception_of("2012-219T05:24:34", clocks_of(run), "from"));
-    const auto none = reception_of("E+1:30", clocks_of(run), "from");
+    const auto none = reception_of("397000000", clocks_of(run), "from");
     REQUIRE(!none);
     CHECK_THAT(none.error().message, Catch::Contains("nobody knows which SCET the run has"));
+}
+
+TEST_CASE("a time from entry is refused where nobody knows when entry is", "[archive][times]") {
+    v1::RunState run = run_with_clock();
+    run.clear_entry_sclk();
+    for (const auto& refused :
+         {instant_of("E+1:30", run, "at").error().message, reception_of("E+1:30", clocks_of(run), "at").error().message,
+          departure_of("E+1:30", clocks_of(run), "at").error().message})
+        CHECK_THAT(refused, Catch::Contains("at: 'E+1:30' counts from entry, and nobody knows when the run has it"));
+    CHECK(instant_of("397000000", run, "at"));
 }

@@ -195,7 +195,7 @@ export function guideStep(
             words:
               run.run.relayProgress > 0
                 ? `${Math.floor(run.run.relayProgress * 100)} % of the recording is down.`
-                : 'Nothing of the recording has come yet.',
+                : 'How much of the recording is down is not known.',
           },
         ]
       : pace > FAST

@@ -22,7 +22,7 @@ export interface Silence {
 
 // chosen: a longer time without a sample is drawn as a gap, of a channel that arrives at 1 Hz or faster
 export const GAP_S = 6;
-const GAP_PERIODS = 2.5; // chosen: one lost sample of a slow channel is no line through what is not known
+export const GAP_PERIODS = 2.5; // chosen: one lost sample of a slow channel is no line through what is not known
 
 /** The longest time between two samples of a channel that its trace goes through. */
 export const gapOf = (expected_rate_hz: number): number =>

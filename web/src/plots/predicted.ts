@@ -11,6 +11,7 @@ import type { Series } from '../run/series';
 import { fromEntry } from '../run/time';
 import { isImportant, shortTitle } from '../timeline/model';
 import { predicted } from '../timeline/now';
+import { outlined, within } from './ink';
 
 export { boundsOfOther, drawOther, samplesOfOther } from './second';
 
@@ -119,42 +120,34 @@ export function drawPredictedLine(
   isDifference: boolean,
   taken: readonly Taken[],
 ): void {
-  const { ctx } = plot;
-  const { left, top, width, height } = plot.bbox;
+  const { left, top, width } = plot.bbox;
   const { min: from, max: to } = plot.scales.x ?? {};
   const { min: low, max: high } = plot.scales.y ?? {};
   if (from === undefined || to === undefined || low === undefined || high === undefined) return;
-  const ratio = window.devicePixelRatio || 1;
-  const colours = palette();
   const x = (e_s: number) => plot.valToPos(e_s, 'x', true);
   const y = (value: number) => plot.valToPos(value, 'y', true);
-  ctx.save();
-  ctx.beginPath();
-  ctx.rect(left, top, width, height);
-  ctx.clip();
-  ctx.strokeStyle = colours.dim;
-  ctx.globalAlpha = FAINT;
-  ctx.lineWidth = ratio;
-  if (isDifference) {
-    ctx.setLineDash(DASH.map((each) => each * ratio));
-    ctx.beginPath();
-    ctx.moveTo(left, y(0));
-    ctx.lineTo(left + width, y(0));
-    ctx.stroke();
-    ctx.restore();
-    return;
-  }
-  const { series, entry_sclk, per, gap_s, channel, now_e_s } = line;
-  ctx.drawImage(pictureOf(plot, line, [from, to], [low, high]), left, top);
-  const now = predictedAt(channel, series, entry_sclk + now_e_s, gap_s);
-  if (now !== undefined) {
+  within(plot, (ctx, ratio) => {
+    ctx.strokeStyle = palette().dim;
+    ctx.globalAlpha = FAINT;
+    ctx.lineWidth = ratio;
+    if (isDifference) {
+      ctx.setLineDash(DASH.map((each) => each * ratio));
+      ctx.beginPath();
+      ctx.moveTo(left, y(0));
+      ctx.lineTo(left + width, y(0));
+      ctx.stroke();
+      return;
+    }
+    const { series, entry_sclk, per, gap_s, channel, now_e_s } = line;
+    ctx.drawImage(pictureOf(plot, line, [from, to], [low, high]), left, top);
+    const now = predictedAt(channel, series, entry_sclk + now_e_s, gap_s);
+    if (now === undefined) return;
     ctx.globalAlpha = 1;
     ctx.beginPath();
     ctx.arc(x(now_e_s), y(now / per), RADIUS * ratio, 0, 7);
     ctx.stroke();
     if (plot.width < WORD_IN_HEAD_PX) nameDot(plot, x(now_e_s), y(now / per), taken);
-  }
-  ctx.restore();
+  });
 }
 
 /** The word of the hollow dot where the plot's head has no room for it: beside it, a line below or above. */
@@ -178,12 +171,7 @@ function nameDot(plot: uPlot, x: number, y: number, taken: readonly Taken[]): vo
   if (row === undefined) return;
   ctx.textAlign = isRight ? 'left' : 'right';
   ctx.textBaseline = 'middle';
-  ctx.strokeStyle = colours.panel; // an outline against the lines behind it
-  ctx.lineWidth = 3 * ratio;
-  ctx.lineJoin = 'round';
-  ctx.strokeText(PREDICTED.word, isRight ? x + away : x - away, row);
-  ctx.fillStyle = colours.dim;
-  ctx.fillText(PREDICTED.word, isRight ? x + away : x - away, row);
+  outlined(ctx, PREDICTED.word, isRight ? x + away : x - away, row, colours.dim);
 }
 
 /**
@@ -191,71 +179,60 @@ function nameDot(plot: uPlot, x: number, y: number, taken: readonly Taken[]): vo
  * no limit has its name: `taken`, left, right and row of each.
  */
 export function drawAhead(plot: uPlot, now_e_s: number, taken: readonly Taken[]): void {
-  const { ctx } = plot;
   const { left, top, width, height } = plot.bbox;
   const [right, bottom] = [left + width, top + height];
   const { min: from = 0, max: to = 0 } = plot.scales.x ?? {};
-  const ratio = window.devicePixelRatio || 1;
   const colours = palette();
   const x = (e_s: number) => plot.valToPos(e_s, 'x', true);
-  ctx.save();
-  ctx.beginPath();
-  ctx.rect(left, top, width, height);
-  ctx.clip();
-  ctx.font = `${TYPE.mark * ratio}px ${colours.sans}`;
-  ctx.fillStyle = ctx.strokeStyle = colours.dim;
-  ctx.lineWidth = ratio;
-  ctx.textAlign = 'center';
-  ctx.textBaseline = 'bottom';
-  for (const silence of windowsOf('silence', 'uhf_live')) {
-    const end = silence.toES ?? Infinity;
-    if (end < now_e_s || silence.fromES > to || end < from) continue;
-    const [x1, x2] = [Math.max(left, x(Math.max(silence.fromES, now_e_s))), Math.min(right, x(Math.min(end, to)))];
-    if (end - silence.fromES < 1) {
-      ctx.fillRect(Math.round(x1), bottom - TICK * ratio, ratio, TICK * ratio); // as short as a hand-over
-      continue;
+  within(plot, (ctx, ratio) => {
+    ctx.font = `${TYPE.mark * ratio}px ${colours.sans}`;
+    ctx.fillStyle = ctx.strokeStyle = colours.dim;
+    ctx.lineWidth = ratio;
+    ctx.textAlign = 'center';
+    ctx.textBaseline = 'bottom';
+    for (const silence of windowsOf('silence', 'uhf_live')) {
+      const end = silence.toES ?? Infinity;
+      if (end < now_e_s || silence.fromES > to || end < from) continue;
+      const [x1, x2] = [Math.max(left, x(Math.max(silence.fromES, now_e_s))), Math.min(right, x(Math.min(end, to)))];
+      if (end - silence.fromES < 1) {
+        ctx.fillRect(Math.round(x1), bottom - TICK * ratio, ratio, TICK * ratio); // as short as a hand-over
+        continue;
+      }
+      ctx.setLineDash(EDGE_DASH.map((each) => each * ratio));
+      ctx.globalAlpha = FAINT;
+      ctx.beginPath();
+      for (const [e_s, px] of [
+        [silence.fromES, x1],
+        [end, x2],
+      ] as const) {
+        if (e_s <= now_e_s || e_s > to) continue;
+        ctx.moveTo(px, top);
+        ctx.lineTo(px, bottom);
+      }
+      ctx.stroke();
+      const words = windowWords(silence).find((each) => ctx.measureText(each).width + 8 * ratio <= x2 - x1);
+      if (words !== undefined) ctx.fillText(words, (x1 + x2) / 2, bottom - 4 * ratio);
     }
-    ctx.setLineDash(EDGE_DASH.map((each) => each * ratio));
-    ctx.globalAlpha = FAINT;
-    ctx.beginPath();
-    for (const [e_s, px] of [
-      [silence.fromES, x1],
-      [end, x2],
-    ] as const) {
-      if (e_s <= now_e_s || e_s > to) continue;
-      ctx.moveTo(px, top);
-      ctx.lineTo(px, bottom);
+    ctx.setLineDash([]);
+    ctx.textBaseline = 'top';
+    const coming = predicted.value
+      .filter(({ name, e_s, fired }) => !fired && e_s > now_e_s && e_s <= to && isImportant(name))
+      .sort((one, other) => one.e_s - other.e_s);
+    for (const { e_s } of coming) {
+      ctx.globalAlpha = FAINT;
+      ctx.fillRect(Math.round(x(e_s)), top, ratio, TICK * ratio);
     }
-    ctx.stroke();
-    const words = windowWords(silence).find((each) => ctx.measureText(each).width + 8 * ratio <= x2 - x1);
-    if (words !== undefined) ctx.fillText(words, (x1 + x2) / 2, bottom - 4 * ratio);
-  }
-  ctx.setLineDash([]);
-  ctx.textBaseline = 'top';
-  const coming = predicted.value
-    .filter(({ name, e_s, fired }) => !fired && e_s > now_e_s && e_s <= to && isImportant(name))
-    .sort((one, other) => one.e_s - other.e_s);
-  for (const { e_s } of coming) {
-    ctx.globalAlpha = FAINT;
-    ctx.fillRect(Math.round(x(e_s)), top, ratio, TICK * ratio);
-  }
-  const next = coming[0];
-  const words = next ? `${shortTitle(next.name)} ${fromEntry(next.e_s)}` : '';
-  const half = ctx.measureText(words).width / 2;
-  if (next && 2 * half < width) {
-    const at = Math.max(left + half + 2, Math.min(right - half - 2, x(next.e_s)));
-    const row = top + (TICK + 1) * ratio;
-    const isFree = !taken.some(
-      (name) => name.from < at + half && name.to > at - half && name.y > row && name.y < row + 22 * ratio,
-    );
-    ctx.globalAlpha = 1;
-    ctx.strokeStyle = colours.panel; // an outline against the lines behind it
-    ctx.lineWidth = 3 * ratio;
-    ctx.lineJoin = 'round';
-    if (isFree) {
-      ctx.strokeText(words, at, row);
-      ctx.fillText(words, at, row);
+    const next = coming[0];
+    const words = next ? `${shortTitle(next.name)} ${fromEntry(next.e_s)}` : '';
+    const half = ctx.measureText(words).width / 2;
+    if (next && 2 * half < width) {
+      const at = Math.max(left + half + 2, Math.min(right - half - 2, x(next.e_s)));
+      const row = top + (TICK + 1) * ratio;
+      const isFree = !taken.some(
+        (name) => name.from < at + half && name.to > at - half && name.y > row && name.y < row + 22 * ratio,
+      );
+      ctx.globalAlpha = 1;
+      if (isFree) outlined(ctx, words, at, row, colours.dim);
     }
-  }
-  ctx.restore();
+  });
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Another run laid over the plots: what the archive has of the plotted channels, by time from entry. It is no part of the run shown,
-// so it has the colour of words, a dash of its own and its number.
+// Another run laid over the plots: what the archive has of the plotted channels, by time from entry. It is no part of
+// the run shown, so it has the colour of words, a dash of its own and its number.
 import { effect } from '@preact/signals';
 import type uPlot from 'uplot';
 import { TYPE } from '../design/type';
@@ -8,51 +8,29 @@ import { palette } from '../draw/palette';
 import type { DictionaryChannel } from '../gen/aeolis/v1/run_pb';
 import { predictedVersion } from '../prediction/model';
 import { read } from '../run/connection';
-import { dictionary, laidOver, notify, plottedChannels } from '../run/shown';
+import { dictionary, laidOver, notify, plottedChannels, store } from '../run/shown';
+import { within, outlined } from './ink';
+import { POINTS, traceOf } from './trace';
+import type { Series, Trace } from './trace';
 
 const DASH = [10, 4]; // unlike those of further channels and of what is predicted
-const POINTS = 1000; // chosen: more than a plot has pixels
-const GAP_S = 12; // chosen: over a channel that comes each 10 s
 
-/** Samples by time from entry; NaN breaks the line. */
-interface Trace {
-  e_s: number[];
-  value: number[];
-}
 let held: { run: number; traces: Map<string, Trace> } | undefined;
-
-interface Series {
-  name: string;
-  sclk?: number[];
-  value?: (number | string | null)[];
-}
-
-/** The samples of both sources in the order of time, without those that are undefined. */
-export function traceOf({ sclk = [], value = [] }: Series, entry_sclk: number): Trace {
-  const all = sclk
-    .map((at, i) => [at - entry_sclk, value[i]] as const)
-    .filter((each): each is readonly [number, number] => typeof each[1] === 'number')
-    .sort(([one], [other]) => one - other);
-  const trace: Trace = { e_s: [], value: [] };
-  for (const [at, now] of all) {
-    if (at - (trace.e_s.at(-1) ?? at) > GAP_S) {
-      trace.e_s.push(at);
-      trace.value.push(NaN);
-    }
-    trace.e_s.push(at);
-    trace.value.push(now);
-  }
-  return trace;
-}
 
 async function ask(run: number, names: readonly string[]): Promise<void> {
   try {
     const [{ entry_sclk }, { channels }] = await Promise.all([
-      read<{ entry_sclk: number }>(`/runs/${run}`),
+      read<{ entry_sclk?: number }>(`/runs/${run}`),
       read<{ channels: Series[] }>(`/runs/${run}/channels?names=${names.join()}&points=${POINTS}`),
     ]);
     if (laidOver.value !== run) return;
-    held = { run, traces: new Map(channels.map((each) => [each.name, traceOf(each, entry_sclk)])) };
+    if (!entry_sclk) throw new Error('nobody knows its time of entry');
+    if (store.value?.entryKnown === false) throw new Error('nobody knows the time of entry of the run that is shown');
+    const rates = new Map(dictionary.value?.channels.map((each) => [each.name, each.expectedRateHz]));
+    held = {
+      run,
+      traces: new Map(channels.map((each) => [each.name, traceOf(each, entry_sclk, rates.get(each.name) ?? 0)])),
+    };
   } catch (error) {
     if (laidOver.value !== run) return;
     laidOver.value = undefined;
@@ -91,40 +69,28 @@ export function drawOther(plot: uPlot, channel: DictionaryChannel, per: number):
   const trace = traceNow(channel);
   const { min: from, max: to } = plot.scales.x ?? {};
   if (!trace || from === undefined || to === undefined) return;
-  const { ctx } = plot;
   const { left, top, width, height } = plot.bbox;
-  const ratio = window.devicePixelRatio || 1;
   const colours = palette();
-  ctx.save();
-  ctx.beginPath();
-  ctx.rect(left, top, width, height);
-  ctx.clip();
-  ctx.strokeStyle = colours.text;
-  ctx.lineWidth = ratio;
-  ctx.setLineDash(DASH.map((each) => each * ratio));
-  ctx.beginPath();
-  let isBroken = true;
-  trace.e_s.forEach((e_s, i) => {
-    const value = trace.value[i] as number;
-    if (Number.isNaN(value)) isBroken = true;
-    if (Number.isNaN(value) || e_s < from - GAP_S || e_s > to + GAP_S) return;
-    const point = [plot.valToPos(e_s, 'x', true), plot.valToPos(value / per, 'y', true)] as const;
-    if (isBroken) ctx.moveTo(...point);
-    else ctx.lineTo(...point);
-    isBroken = false;
+  within(plot, (ctx, ratio) => {
+    ctx.strokeStyle = colours.text;
+    ctx.lineWidth = ratio;
+    ctx.setLineDash(DASH.map((each) => each * ratio));
+    ctx.beginPath();
+    let isBroken = true;
+    trace.e_s.forEach((e_s, i) => {
+      const value = trace.value[i] as number;
+      if (Number.isNaN(value)) isBroken = true;
+      if (Number.isNaN(value) || (trace.e_s[i + 1] ?? e_s) < from || (trace.e_s[i - 1] ?? e_s) > to) return;
+      const point = [plot.valToPos(e_s, 'x', true), plot.valToPos(value / per, 'y', true)] as const;
+      if (isBroken) ctx.moveTo(...point);
+      else ctx.lineTo(...point);
+      isBroken = false;
+    });
+    ctx.stroke();
+    ctx.setLineDash([]);
+    ctx.font = `${TYPE.mark * ratio}px ${colours.sans}`;
+    ctx.textAlign = 'right';
+    ctx.textBaseline = 'bottom';
+    outlined(ctx, `╌ run ${held?.run}`, left + width - 4 * ratio, top + height - 3 * ratio, colours.text);
   });
-  ctx.stroke();
-  ctx.setLineDash([]);
-  ctx.font = `${TYPE.mark * ratio}px ${colours.sans}`;
-  ctx.textAlign = 'right';
-  ctx.textBaseline = 'bottom';
-  ctx.strokeStyle = colours.panel; // an outline against the lines behind it
-  ctx.lineWidth = 3 * ratio;
-  ctx.lineJoin = 'round';
-  const words = `╌ run ${held?.run}`;
-  const at = [left + width - 4 * ratio, top + height - 3 * ratio] as const;
-  ctx.strokeText(words, ...at);
-  ctx.fillStyle = colours.text;
-  ctx.fillText(words, ...at);
-  ctx.restore();
 }

@@ -339,13 +339,17 @@ function Plot(properties: Properties) {
       const silences = changes.reduce((all, each) => all + each.length, 0);
       // a present silence grows with the clock, without new samples
       const silent = changes.every((each) => each.at(-1)?.fact.up !== true) ? run?.seenSclk.toFixed(0) : '';
-      const key = `${run?.id} ${silences} ${silent} ${recorded?.version} ${live?.version} ${span.from.toFixed(1)} ${span.to.toFixed(1)} ${cutoff.value} ${width} ${height} ${newShape} ${overVersions(run, over)} ${predictedVersion.value} ${laidOver.value} ${line?.now_e_s.toFixed(1)} ${isPredicted()} ${isDifference} ${predicted.value.length} ${limitsOver(
-        channel,
-        -Infinity,
-        Infinity,
-      )
-        .map(({ from_sclk }) => from_sclk)
-        .join()}`;
+      const limits = limitsOver(channel, -Infinity, Infinity).map(({ from_sclk }) => from_sclk);
+      const times = [span.from, span.to, line?.now_e_s].map((each) => each?.toFixed(1));
+      const versions = [
+        recorded?.version,
+        live?.version,
+        overVersions(run, over),
+        predictedVersion.value,
+        laidOver.value,
+      ];
+      const looks = [cutoff.value, width, height, newShape, isPredicted(), isDifference, predicted.value.length];
+      const key = [run?.id, silences, silent, ...versions, ...times, ...looks, limits].join(' ');
       if (key === shown && traces[0] === recorded && traces[1] === live)
         return cursor.peek() === placed ? undefined : placeCursor;
       shown = key;

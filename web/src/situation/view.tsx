@@ -10,7 +10,7 @@ import './style.css';
 
 /** Letters that have room in one line in the large size, at each width; more have the smaller one. */
 const ONE_LINE = 68;
-/** Letters that have room in the largest size beside what can be pressed: of news, and of a wait beside its countdown, however long that is. */
+/** Letters of news that have room in the largest size beside what can be pressed; then, of a wait beside a countdown. */
 const NEWS = 48;
 const WAIT = 33;
 
