@@ -3,6 +3,7 @@
 #include "server/base/clock_watch.hpp"
 #include "server/base/wall_clock.hpp"
 #include "server/cli/commands.hpp"
+#include "server/cli/ingest_delivery.hpp"
 #include "server/cli/ingest_radio.hpp"
 #include "server/cli/ingest_tones.hpp"
 #include "server/cli/options.hpp"
