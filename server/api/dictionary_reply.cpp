@@ -2,7 +2,6 @@
 #include "server/api/dictionary_reply.hpp"
 
 #include "telemetry/alarms.hpp"
-#include "telemetry/staleness.hpp"
 
 #include <fmt/format.h>
 #include <map>
@@ -57,8 +56,6 @@ void add_channel(const dictionary::Dictionary& dictionary, const dictionary::Cha
     if (packet == nullptr) return;
     added.set_packet(packet->name);
     added.set_expected_rate_hz(packet->expected_rate_hz.value_or(0.0));
-    const auto index = static_cast<std::size_t>(packet - dictionary.packets.data());
-    if (const auto after_s = telemetry::stale_after_s(dictionary, index)) added.set_stale_after_s(*after_s);
 }
 
 void add_command(const dictionary::Dictionary& dictionary, const dictionary::Command& command,

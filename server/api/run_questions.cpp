@@ -533,6 +533,10 @@ HttpResponse recording(const AnswerContext&, archive::Reader& reader, archive::R
     return answer(reader.recording(run));
 }
 
+HttpResponse staleness(const AnswerContext&, archive::Reader& reader, archive::RunId run, const QueryText&) {
+    return answer(reader.recorded_staleness(run));
+}
+
 std::string csv_of(const v1::ProofReport& report) {
     std::string csv =
         "of,name,realtime,identical,differs,missing_in_recording,recorded,never_seen_live,not_decoded,pending\n";
@@ -613,6 +617,7 @@ const std::array questions{
     RunRoute{"limits", {"recorded"}, {}, limits},
     RunRoute{"touchdown", {"at", "recorded"}, {}, touchdown_report},
     RunRoute{"recording", {}, {}, recording},
+    RunRoute{"staleness", {}, {}, staleness},
     RunRoute{"proof", {"format"}, report_formats, proof},
     RunRoute{"report", {"format"}, report_formats, report},
     RunRoute{"score", {}, {}, score},

@@ -308,6 +308,9 @@ class Reader {
     /// The timeline: planned times, firings as far as known, and predictions from what was known.
     Result<v1::TimepointList> timepoints(RunId run, const TimepointQuery& query = {});
     Result<v1::RecordingSummary> recording(RunId run);
+    /// When the newest packet of each kind was stale, by all that came live and with the recording. Empty before any of
+    /// the recording has come. Refused for a run of another dictionary.
+    Result<v1::RecordedStaleness> recorded_staleness(RunId run);
     /// Compares each live packet and tone with the recording, in totals. Takes as long as reading all packets.
     Result<v1::ProofReport> proof(RunId run);
     /// The as-flown report that a review of the landing starts from, with the first page of commands and of notes.

@@ -125,6 +125,7 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
         {"GET", "/api/v1/runs/1/touchdown?at=noon", "", 400, "at: 'noon' is no instant"},
         {"GET", "/api/v1/runs/1/score", "", 400, "run 1 has no score"},
         {"GET", "/api/v1/runs/1/recording", "", 200, "\"realtime_differs\":\"0\""},
+        {"GET", "/api/v1/runs/1/staleness", "", 200, "{\"packets\":[]}"},
         {"GET", "/api/v1/runs/1/report", "", 200, "\"timepoints\":["},
         {"GET", "/api/v1/runs/1/state", "", 200, "\"channels\":["},
         {"GET", "/api/v1/scenarios", "", 200, "nominal_auto"},

@@ -142,6 +142,7 @@ class Controlled {
                                  "/limits",
                                  "/touchdown",
                                  "/recording",
+                                 "/staleness",
                                  "/proof",
                                  "/report",
                                  "/state?at=E-10:00",

@@ -157,4 +157,30 @@ TEST_CASE("of one source a series tells the gaps of that source", "[reader][arch
           "15 recorded relay never_seen_live 1020-1034; gap 1010-1020 ; gap 1034-1040 ; ");
 }
 
+TEST_CASE("once some of the recording has come, the archive says when packets were stale by all that came of them",
+          "[reader][archive][R43]") {
+    Landing landing;
+    const auto stale = [&] {
+        REQUIRE(landing.pipeline.commit().ok());
+        auto reader = std::move(Reader::open(landing.folder / "a.db", landing.dictionary)).value();
+        const auto report = reader.recorded_staleness(RunId{1});
+        REQUIRE(report.ok());
+        std::string text;
+        for (const auto& packet : report->packets()) {
+            text += packet.packet() + " after " + std::to_string(static_cast<int>(packet.stale_after_s())) + " s:";
+            for (const auto& each : packet.stretches())
+                text += " " + std::to_string(static_cast<int>(each.from_sclk())) + "-" +
+                        (each.has_to_sclk() ? std::to_string(static_cast<int>(each.to_sclk())) : std::string{});
+        }
+        return text;
+    };
+    CHECK(stale().empty());
+    landing.take(recorded(Landing::packet(0)));
+    CHECK(stale() == "Navigation after 5 s: 1024-1035 1044-");
+    for (std::uint16_t i = 20; i < 26; ++i) landing.take(recorded(Landing::packet(i)));
+    CHECK(stale() == "Navigation after 5 s: 1030-1035 1044-");
+    for (std::uint16_t i = 26; i < 42; ++i) landing.take(recorded(Landing::packet(i)));
+    CHECK(stale() == "Navigation after 5 s: 1046-");
+}
+
 }  // namespace archive_sample_origins_test

@@ -8,6 +8,7 @@ import type { Dictionary } from '../run/dictionary';
 import { valueText } from '../run/dictionary';
 import { allLimitsText, isWorst, limitsAt, limitsText } from '../run/limits';
 import type { RunStore, Sample } from '../run/store';
+import { wasStale } from '../run/staleness';
 import { duration } from '../run/time';
 import { whoseAt } from '../run/whose';
 
@@ -102,14 +103,13 @@ const ageOf = (store: RunStore, sample: Sample, cutoff: number): number =>
   );
 
 /**
- * Of a live value the ground has said so, packet by packet; of a recorded one it gives the time in which another should
- * be there. The history held is thinned: nothing is known between two of its samples. Nothing is of now without a
- * connection, nor after the end of a run.
+ * As the ground says, packet by packet: of live values as they came, of recorded ones by all that has come. Nothing is of
+ * now without a connection, nor after the end of a run.
  */
 function isStale(store: RunStore, channel: DictionaryChannel, sample: Sample, cutoff: number, lost: boolean): boolean {
   if (cutoff === Infinity && (lost || !store.going)) return true;
   if (!sample.recorded) return store.isStale(channel.packet, cutoff);
-  return ageOf(store, sample, cutoff) - store.spacing(channel.id) > (channel.staleAfterS ?? Infinity);
+  return wasStale(channel.packet, Math.min(store.seenSclk, cutoff), sample.sclk);
 }
 
 /** "◌ 41 s": the age of a channel's last sample if it is stale. All figures use this, as the table does. */

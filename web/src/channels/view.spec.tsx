@@ -2,6 +2,7 @@
 import { describe, expect, it } from 'vitest';
 import { limitsAnswer } from '../run/limits';
 import { store } from '../run/shown';
+import { recordedStaleness } from '../run/staleness';
 import { aDictionary, aRun, aStore, alarm, samples, speedLimits, staleness } from '../testing/fixtures';
 import { channelRow, channelsShown, staleWords } from './model';
 
@@ -41,10 +42,24 @@ describe('channels', () => {
     ]);
     expect(row(aStore([fresh]), 'altitude_m', 899, true)?.look).toBe('good');
   });
-  it('known by the recording are of their instant for as long as the server says, whatever was heard live', () => {
-    const store = aStore([samples(830, { 3: 1 }), silent]);
-    store.addHistory([{ id: 3, sclk: new Float64Array([848, 849]), value: new Float64Array([2, 2]), recorded: true }]);
-    expect([849, 854, 856].map((cutoff) => row(store, 'altitude_m', cutoff)?.look)).toEqual(['good', 'good', 'stale']);
+  it('known by the recording are stale when the server says so, whatever was heard live, and until it has said', () => {
+    const run = aStore([samples(830, { 3: 1 }), silent]);
+    run.addHistory([
+      { id: 3, sclk: new Float64Array([848, 849, 870]), value: new Float64Array([2, 2, 2]), recorded: true },
+    ]);
+    const looks = (...cutoffs: number[]) => cutoffs.map((cutoff) => row(run, 'altitude_m', cutoff)?.look);
+    store.value = run;
+    expect(looks(849, 854, 899)).toEqual(['stale', 'stale', 'stale']);
+    recordedStaleness.value = {
+      packets: [{ packet: 'Navigation', stretches: [{ from_sclk: 855, to_sclk: 868 }, { from_sclk: 869 }] }],
+    };
+    // between 868 and 870 the history held is thinned; at 870 there is more than the server had when it answered
+    expect(looks(849, 854, 856, 868.5, 870, 899)).toEqual(['good', 'good', 'stale', 'good', 'good', 'good']);
+    recordedStaleness.value = { packets: [{ packet: 'Navigation', stretches: [{ from_sclk: 875 }] }] };
+    expect(looks(870, 874, 876)).toEqual(['good', 'good', 'stale']);
+    recordedStaleness.value = { packets: [] }; // of a packet without a rate none is too old
+    expect(looks(899)).toEqual(['good']);
+    store.value = undefined;
   });
   it('give every figure the same judgement, with its age in words', () => {
     const words = (store: ReturnType<typeof aStore>, cutoff = Infinity, lost = false) =>

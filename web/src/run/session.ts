@@ -15,6 +15,7 @@ import { firstAnswers } from './first_look';
 import type { FirstLook } from './first_look';
 import { refreshLimits } from './limits';
 import { isSameRun } from './same';
+import { refreshStaleness } from './staleness';
 import {
   asHeard,
   asked,
@@ -360,6 +361,7 @@ export async function begin(): Promise<void> {
     if (stream.value.state === 'live') await refreshPrediction();
   });
   void everySeconds(1, refreshLimits);
+  void everySeconds(1, refreshStaleness);
   void everySeconds(3, refreshRuns);
   void everySeconds(1, refreshAgainst);
   void everySeconds(TIMELINE_LOOK_S, async () => {

@@ -94,7 +94,6 @@ export const aDictionary = new Dictionary(
         unit: 'm',
         limits: [{ severity: 'warning', above: 200000 }],
         expectedRateHz: 8,
-        staleAfterS: 5,
       },
       {
         id: 4,

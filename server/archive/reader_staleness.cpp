@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/archive/reader_state.hpp"
+#include "telemetry/staleness.hpp"
+
+#include <optional>
+
+namespace aeolis::archive {
+namespace {
+
+constexpr char times_sql[] =
+    "SELECT packet, sclk FROM packets WHERE key BETWEEN ?1 AND ?2 AND sampled = 1 AND EXISTS (SELECT 1 FROM recordings"
+    " WHERE run = ?3 AND recorded > 0) ORDER BY packet, sclk";
+
+/// The stretches of one packet, whose times are added in order.
+class Stretches {
+  public:
+    Stretches(v1::PacketStaleness& packet, double after_s) : packet_(&packet), after_s_(after_s) {}
+
+    void add(double sclk_s) {
+        if (last_s_ && sclk_s - *last_s_ > after_s_) stale_from_last().set_to_sclk(sclk_s);
+        last_s_ = sclk_s;
+    }
+    /// The last one stands for good, as far as is known.
+    void end() {
+        if (last_s_) stale_from_last();
+    }
+
+  private:
+    v1::StaleStretch& stale_from_last() {
+        auto& stretch = *packet_->add_stretches();
+        stretch.set_from_sclk(*last_s_ + after_s_);
+        return stretch;
+    }
+
+    v1::PacketStaleness* packet_;
+    double after_s_;
+    std::optional<double> last_s_{};
+};
+
+}  // namespace
+
+Result<v1::RecordedStaleness> Reader::recorded_staleness(RunId run) {
+    const auto instant = state_->instant(run);
+    if (!instant) return instant.error();
+    if (auto same = state_->same_dictionary(instant->run); !same) return same.error();
+    v1::RecordedStaleness report;
+    auto rows = state_->query(times_sql);
+    if (!rows) return rows.error();
+    (*rows)->bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max)).bind(3, std::int64_t{run.value});
+    std::optional<Stretches> stretches;
+    std::optional<std::int64_t> of;
+    for (;;) {
+        const auto found = (*rows)->step();
+        if (!found) return found.error();
+        if (!*found) break;
+        if (const auto packet = (*rows)->integer(0); packet != of) {
+            if (stretches) stretches->end();
+            stretches.reset();
+            of = packet;
+            const auto index = static_cast<std::size_t>(packet);
+            if (const auto after_s = telemetry::stale_after_s(state_->dictionary, index)) {
+                auto& added = *report.add_packets();
+                added.set_packet(state_->dictionary.packets[index].name);
+                added.set_stale_after_s(*after_s);
+                stretches.emplace(added, *after_s);
+            }
+        }
+        if (stretches) stretches->add((*rows)->real(1));
+    }
+    if (stretches) stretches->end();
+    return report;
+}
+
+}  // namespace aeolis::archive
