@@ -14,27 +14,25 @@ constexpr char times_sql[] =
 /// The stretches of one packet, whose times are added in order.
 class Stretches {
   public:
-    Stretches(v1::PacketStaleness& packet, double after_s) : packet_(&packet), after_s_(after_s) {}
+    Stretches(v1::PacketStaleness& packet, double after_s, double first_s)
+        : packet_(&packet), after_s_(after_s), last_s_(first_s) {}
 
     void add(double sclk_s) {
-        if (last_s_ && sclk_s - *last_s_ > after_s_) stale_from_last().set_to_sclk(sclk_s);
+        if (sclk_s - last_s_ > after_s_) stale_from_last().set_to_sclk(sclk_s);
         last_s_ = sclk_s;
     }
-    /// The last one stands for good, as far as is known.
-    void end() {
-        if (last_s_) stale_from_last();
-    }
+    /// After the last packet none has come.
+    void end() { stale_from_last(); }
 
   private:
     v1::StaleStretch& stale_from_last() {
         auto& stretch = *packet_->add_stretches();
-        stretch.set_from_sclk(*last_s_ + after_s_);
+        stretch.set_from_sclk(last_s_ + after_s_);
         return stretch;
     }
 
     v1::PacketStaleness* packet_;
-    double after_s_;
-    std::optional<double> last_s_{};
+    double after_s_, last_s_;
 };
 
 }  // namespace
@@ -48,11 +46,12 @@ Result<v1::RecordedStaleness> Reader::recorded_staleness(RunId run) {
     if (!rows) return rows.error();
     (*rows)->bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max)).bind(3, std::int64_t{run.value});
     std::optional<Stretches> stretches;
-    std::optional<std::int64_t> of;
+    std::int64_t of = -1;
     for (;;) {
         const auto found = (*rows)->step();
         if (!found) return found.error();
         if (!*found) break;
+        const double sclk_s = (*rows)->real(1);
         if (const auto packet = (*rows)->integer(0); packet != of) {
             if (stretches) stretches->end();
             stretches.reset();
@@ -62,10 +61,10 @@ Result<v1::RecordedStaleness> Reader::recorded_staleness(RunId run) {
                 auto& added = *report.add_packets();
                 added.set_packet(state_->dictionary.packets[index].name);
                 added.set_stale_after_s(*after_s);
-                stretches.emplace(added, *after_s);
+                stretches.emplace(added, *after_s, sclk_s);
             }
         }
-        if (stretches) stretches->add((*rows)->real(1));
+        if (stretches) stretches->add(sclk_s);
     }
     if (stretches) stretches->end();
     return report;

@@ -48,7 +48,7 @@ Result<WrittenInstant> read_instant(std::string_view text, Sclk entry, std::stri
     if (const auto entry_s = seconds_from_entry(written)) {
         if (entry == Sclk{})
             return Error{std::string{name} + ": '" + std::string{text} +
-                         "' counts from entry, and nobody knows when the run has it: SCLK or UTC is wanted"};
+                         "' counts from entry, and nobody knows when the run has it: a time of a clock is wanted"};
         return WrittenInstant{entry + *entry_s};
     }
     using By = WrittenInstant::By;

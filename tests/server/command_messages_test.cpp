@@ -52,6 +52,9 @@ TEST_CASE("what is no time is refused as the time at which a command leaves, and
     v1::CommandRequest request;
     request.set_release_at("E-10:00");
     CHECK(server::request_of(request, {}).error().message ==
+          "release_at: 'E-10:00' counts from entry, and nobody knows when the run has it: a time of a clock is wanted");
+    request.set_release_at("997.25");
+    CHECK(server::request_of(request, {}).error().message ==
           "release_at: nobody knows which SCET the run has: a UTC time is wanted");
 }
 
