@@ -8,7 +8,7 @@
 // is no seam, and no million samples pass through the socket.
 import { create, fromBinary, fromJson, toBinary } from '@bufbuild/protobuf';
 import type { DescMessage, MessageInitShape } from '@bufbuild/protobuf';
-import { PredictionSchema } from '../gen/aeolis/v1/prediction_pb';
+import { PredictionSchema } from '../gen/worker/aeolis/v1/prediction_pb';
 import {
   AsFlownReportSchema,
   CommandListSchema,
@@ -17,9 +17,9 @@ import {
   RecordingSummarySchema,
   ScenarioListSchema,
   TimepointListSchema,
-} from '../gen/aeolis/v1/run_pb';
-import { ClientMessageSchema, ServerMessageSchema } from '../gen/aeolis/v1/stream_pb';
-import type { Batch, RehearsalControlSchema, ServerMessage } from '../gen/aeolis/v1/stream_pb';
+} from '../gen/worker/aeolis/v1/run_pb';
+import { ClientMessageSchema, ServerMessageSchema } from '../gen/worker/aeolis/v1/stream_pb';
+import type { Batch, RehearsalControlSchema, ServerMessage } from '../gen/worker/aeolis/v1/stream_pb';
 import { Pace } from '../run/pace';
 import { isSameRun } from '../run/same';
 import { ColumnCollector } from './columns';
