@@ -51,6 +51,8 @@ constexpr std::size_t clients = 1000, watched = 4, watched_channels = 30;  // on
 constexpr std::size_t packet_kinds = 32, packets_per_s = 2000, channels_a_packet = 368;  // 1.5 kB
 constexpr std::size_t events_per_s = 10, tones_per_s = 1, stages_per_s = 2;
 constexpr int stalled_receive_octets = 4096;  // otherwise the kernel would read for it
+// With room for 4096 the sender learns only by its next probe, up to 12 s later, that there is room (ss: timer:(persist)).
+constexpr int reading_receive_octets = 1 << 18;
 constexpr double seconds = 10.0, seconds_with_lists_max = 60.0;
 constexpr double sample_rate_hz = 20.0;
 constexpr double lists_from_s = 2.0;  // after the load began
@@ -145,7 +147,11 @@ class Watcher {
         ::close(socket_);
     }
 
-    void read_on() { reads_ = true; }
+    void read_on() {
+        must(::setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &reading_receive_octets, sizeof reading_receive_octets) == 0,
+             "SO_RCVBUF");
+        reads_ = true;
+    }
 
     const char* name;  ///< in the report
     std::atomic<std::uint64_t> events{0}, tones{0}, stages{0}, through{0};
