@@ -50,10 +50,10 @@ class QueryThreads {
   public:
     static constexpr std::size_t question_threads = 6;  ///< chosen: each holds a connection of some MB and a list
     static constexpr std::size_t threads = question_threads + 1;
-    static constexpr std::size_t running_max = 2;          ///< chosen: of question threads at a time; others are paused
-    static constexpr std::size_t of_client_max = 2;        ///< chosen: question threads for one client's queries
-    static constexpr std::size_t crowd_min = 3;            ///< chosen: clients from which on each has only one
-    static constexpr std::chrono::milliseconds slice{10};  ///< chosen: before a query gives way to one that waits
+    static constexpr std::size_t running_max = 2;         ///< chosen: of question threads at a time; others are paused
+    static constexpr std::size_t of_client_max = 2;       ///< chosen: question threads for one client's queries
+    static constexpr std::size_t crowd_min = 3;           ///< chosen: clients from which on each has only one
+    static constexpr std::chrono::milliseconds slice{5};  ///< chosen: before a query gives way to one that waits
     /// Chosen, by JobPriority; beyond it a job is refused ("busy"). Each stream connection asks for one page at a time,
     /// and there are at most 1 000 of them: room for two pages each means that none is refused.
     static constexpr std::array<std::size_t, 3> waiting_max{256, 2'000, 256};
