@@ -5,7 +5,7 @@ import { useEffect, useRef } from 'preact/hooks';
  * The end of a list that scrolls, last in it. While it is out of sight the list has `data-goes-on`, and fades out at its
  * foot: no row ends in the middle of its letters.
  */
-export function Foot({ as: Element = 'div' }: { as?: 'div' | 'li' }) {
+export function Foot({ as: Tag = 'div' }: { as?: 'div' | 'li' }) {
   const end = useRef<HTMLElement & HTMLDivElement & HTMLLIElement>(null);
   useEffect(() => {
     const list = end.current?.parentElement;
@@ -17,5 +17,5 @@ export function Foot({ as: Element = 'div' }: { as?: 'div' | 'li' }) {
     seen.observe(end.current);
     return () => seen.disconnect();
   }, []);
-  return <Element ref={end} class="foot" aria-hidden="true" />;
+  return <Tag ref={end} class="foot" aria-hidden="true" />;
 }
