@@ -49,10 +49,7 @@ async function play(scenario, moments) {
         const isThere = () => Number(document.querySelector('.plot')?.dataset.predicted) > 0;
         await page.waitForFunction(isThere, undefined, { timeout: 8000 }).catch(() => undefined);
         await page.waitForTimeout(1500); // for what is asked after a resize, and a draw after it
-        await page.screenshot({
-          path: path.join(pictures, `${name}_${size.width}.png`),
-          animations: 'allow', // that of a list's foot follows its scroll
-        });
+        await page.screenshot({ path: path.join(pictures, `${name}_${size.width}.png`) });
       }
       await page.setViewportSize(SIZES[0]);
       console.log(name);

@@ -103,6 +103,25 @@ test('the table of channels has names, aliases, descriptions and units as msl.xm
   await page.close();
 });
 
+test('a list of which more is below fades out at its foot, until its end is in sight', async () => {
+  const { page, problems } = await open(server.address, { width: 1440, height: 790 });
+  const list = page.getByTestId('event-list');
+  const fades = () => list.evaluate((each) => getComputedStyle(each).maskImage !== 'none');
+  const isTrue = (value) => value;
+  const isFalse = (value) => !value;
+
+  await waitFor(fades, isTrue);
+  await list.evaluate((each) => each.scrollTo(0, each.scrollHeight));
+  await waitFor(fades, isFalse);
+  await list.evaluate((each) => each.scrollTo(0, 0));
+  await waitFor(fades, isTrue);
+  await page.getByTestId('event-search').fill('no event says this');
+  await waitFor(fades, isFalse);
+
+  assert.deepEqual(problems, []);
+  await page.close();
+});
+
 test('the console, its timeline and plots, its channels and its command line come to look as stored', async () => {
   const { page, problems, shows } = await open(server.address, { width: 1000, height: 640 });
   const different = [];

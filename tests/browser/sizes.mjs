@@ -50,6 +50,16 @@ export const STATES = {
     await flyTo(server, 70);
     return { server, reach: ({ shows }) => shows('waiting', /peak deceleration/) };
   },
+  'station lost': async (serve, t) => {
+    const server = await serve(t, 'station', ['--scenario', 'nominal_auto', '--pace', '100']);
+    await flyTo(server, 180);
+    await control(server, { inject: { station_outage: { duration_s: 60 } } });
+    await flyTo(server, 188);
+    return {
+      server,
+      reach: ({ shows }) => shows('waiting', /Predicted: [^]*Not heard since [^]*no word of it can come/),
+    };
+  },
   landed: async (serve, t) => ({
     server: await landed(serve, t),
     reach: async ({ page, shows }) => {

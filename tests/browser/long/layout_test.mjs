@@ -258,7 +258,7 @@ function whatIsInSight() {
   const box = (element) => element.getBoundingClientRect();
   const list = document.querySelector('[data-testid="event-list"]');
   const waiting = document.querySelector('[data-testid="waiting"]');
-  const events = [...list.children].filter(
+  const events = [...list.querySelectorAll('.event')].filter(
     (row) => box(row).top >= box(list).top - 1 && box(row).bottom <= Math.min(box(list).bottom, innerHeight) + 1,
   ).length;
   const unread = [...waiting.querySelectorAll('h2, li')].filter(

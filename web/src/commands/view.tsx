@@ -3,6 +3,7 @@
 import type { ComponentChildren } from 'preact';
 import { mayAct } from '../access/model';
 import { openedLater } from '../design/opened_later';
+import { Foot } from '../design/foot';
 import { Panel } from '../design/panel';
 import { hasNoCommands, pastRange, takesCommands } from '../run/shown';
 import './disarm';
@@ -175,6 +176,7 @@ export function Commands() {
       <Queue />
       {canSend && <CommandFile />}
       <History />
+      <Foot />
     </Panel>
   );
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { signal } from '@preact/signals';
+import { Foot } from '../design/foot';
 import { Panel } from '../design/panel';
 import { STATUS } from '../design/status';
 import { pastRange, runNow } from '../run/shown';
@@ -102,6 +103,7 @@ export function Events() {
         })}
         {found > lines.length && <li class="none">{found - lines.length} older ones: search, or ask for a range</li>}
         {lines.length === 0 && <li class="none">no event yet{search.value ? ` with “${search.value}”` : ''}</li>}
+        <Foot as="li" />
       </ol>
     </Panel>
   );

@@ -4,6 +4,7 @@ import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import { mayAct } from '../access/model';
 import { Signature } from '../commands/signature';
+import { Foot } from '../design/foot';
 import { cutoff, pastRange, runNow } from '../run/shown';
 import { dayOfYear, fromEntry } from '../run/time';
 import { found, notes, problem, refreshNotes, write, writing } from './model';
@@ -112,6 +113,7 @@ export function Notes() {
         {shown.length === 0 && (
           <li class="none">{search.value ? `no note has “${search.value}”` : 'nothing is written down yet'}</li>
         )}
+        <Foot as="li" />
       </ol>
     </div>
   );

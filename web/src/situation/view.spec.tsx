@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// @vitest-environment happy-dom
+import { render } from 'preact';
+import { act } from 'preact/test-utils';
 import { describe, expect, it } from 'vitest';
-import { aRun, aStore, situation } from '../testing/fixtures';
+import { useForTest } from '../run/session';
+import { aDictionary, aRun, aStore, situation } from '../testing/fixtures';
 import { countdownWords, roughly } from './countdown';
-import { lookOf, situationOf } from './model';
+import { listShown, lookOf, situationOf } from './model';
+import { Situation } from './view';
 
 // The fixtures' run: SCLK 900 is heard at 05:00:00, entry is at 1000, that is at 05:01:40.
 const BLACKOUT = {
@@ -87,6 +92,36 @@ describe('the banner', () => {
     ]);
     const { first, more } = situationOf(store, Infinity, undefined);
     expect([first, ...more].map((line) => line && lookOf(line))).toEqual(['holds', 'quiet', 'quiet']);
+  });
+});
+
+describe('the list of what else matters', () => {
+  const listed = (...entries: Parameters<typeof situation>[1][]) => {
+    const root = document.createElement('div');
+    act(() => {
+      useForTest(aStore([situation('2012-219T04:59:55.0', ...entries)]), aDictionary);
+      listShown.value = true;
+      render(<Situation />, root);
+    });
+    const said = [...root.querySelectorAll('[data-testid="situation-list"] li')].map((li) => li.textContent);
+    act(() => {
+      listShown.value = false;
+      render(null, root);
+    });
+    return said;
+  };
+  it('ends with what lasts, as a whole sentence, and says none twice', () => {
+    expect(listed(BLACKOUT, CLOSED)).toEqual([
+      expect.stringContaining(BLACKOUT.sentence),
+      expect.stringContaining(CLOSED.sentence),
+    ]);
+    expect(listed(CLOSED)).toEqual([expect.stringContaining(CLOSED.sentence)]);
+    const lasting = { ...BACKUP, rank: 'lasting' as const };
+    expect(listed(BACKUP, BLACKOUT, lasting)).toEqual([
+      expect.stringContaining(BACKUP.sentence),
+      expect.stringContaining(BLACKOUT.sentence),
+    ]);
+    expect(listed(BACKUP, lasting)).toEqual([]);
   });
 });
 

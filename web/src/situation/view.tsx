@@ -4,7 +4,7 @@ import { armedHere, armedLeft_s } from '../commands/armed';
 import { STATUS } from '../design/status';
 import { modeNow, runNow } from '../run/shown';
 import { duration, fromEntry } from '../run/time';
-import { aside, listShown, lookOf, pointAt, putAside, situationNow, toggleList } from './model';
+import { LOOKS, aside, listShown, lookOf, pointAt, putAside, situationNow, toggleList } from './model';
 import type { Line } from './model';
 import './style.css';
 
@@ -63,6 +63,8 @@ export function Situation() {
   const run = runNow();
   const { first, more } = situationNow(run);
   if (!run && !first) return null;
+  // Beside the badge are only its first words.
+  const lasts = lastingNow(run).filter(({ sentence }) => ![first, ...more].some((line) => line?.sentence === sentence));
   // What is armed here has the large words.
   const isLong = first && (armedHere.value.length > 0 || first.sentence.length + first.countdown.length > ONE_LINE);
   const isNews = first && first.sentence.length <= (first.countdown === '' ? NEWS : first.namesAwaited ? WAIT : 0);
@@ -91,7 +93,7 @@ export function Situation() {
           put aside <kbd>x</kbd>
         </button>
       )}
-      {more.length > 0 && (
+      {more.length + lasts.length > 0 && (
         <button
           type="button"
           class="quiet"
@@ -104,24 +106,36 @@ export function Situation() {
               {STATUS[lookOf(next)].shape}{' '}
             </span>
           )}
-          {waiting > 0 ? `+${waiting} more` : `${aside.value.size} put aside`} <kbd>m</kbd>
+          {waiting > 0 ? `+${waiting} more` : more.length > 0 ? `${aside.value.size} put aside` : 'what lasts'}{' '}
+          <kbd>m</kbd>
         </button>
       )}
-      {listShown.value && more.length > 0 && (
+      {listShown.value && more.length + lasts.length > 0 && (
         <ol data-testid="situation-list">
           {first && [first, ...more].map((line) => <Entry key={line.key} line={line} />)}
+          {lasts.map(({ subject, sentence }) => (
+            <li key={`lasting ${subject}`}>
+              <span aria-hidden="true" class="caution">
+                {STATUS[LOOKS.lasting].shape}
+              </span>{' '}
+              <span>{sentence}</span>
+            </li>
+          ))}
         </ol>
       )}
     </section>
   );
 }
 
-/** The states that last, beside the badge. */
-export function Lasting() {
-  // Where nothing can be sent, nobody needs to know that it would be too late.
-  const lasting = situationNow(runNow()).lasting.filter(
+/** What lasts. Where nothing can be sent, nobody needs to know that it would be too late. */
+const lastingNow = (run: ReturnType<typeof runNow>) =>
+  situationNow(run).lasting.filter(
     ({ subject }) => subject !== 'commanding' || ['live', 'rehearsal'].includes(modeNow()),
   );
+
+/** The states that last, beside the badge. */
+export function Lasting() {
+  const lasting = lastingNow(runNow());
   if (lasting.length === 0) return null;
   return (
     <ul class="lasting" data-testid="lasting" aria-label="states that last">

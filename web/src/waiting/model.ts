@@ -194,13 +194,16 @@ export function waitingFor(
   const moment = momentsOf(store, plan, cutoff).find((each) => !each.done && each.before === main.name);
   const named = plan.slice(plan.indexOf(main) + 1).find((row) => isImportant(row.name));
   const now = Math.min(store.seenSclk, cutoff);
-  const title = `${main.plannedES === undefined ? 'Waiting for' : 'Next:'} ${inWords(main.name)}`;
+  const unheard = entriesAt(store, cutoff).find(({ rank, subject }) => rank === 'news' && subject === 'vehicle');
+  const isPlanned = main.plannedES !== undefined;
+  const title = `${isPlanned ? 'Next:' : unheard ? 'Predicted:' : 'Waiting for'} ${inWords(main.name)}`;
   const note = noteWords(main.note);
+  const lines = conditions(store, dictionary, plan, main, cutoff, predicted);
   return {
     kind: 'waiting',
     title,
-    words: repeats(title, note) ? '' : note,
-    lines: conditions(store, dictionary, plan, main, cutoff, predicted),
+    words: unheard ? `${firstClause(unheard.sentence)}: no word of it can come.` : repeats(title, note) ? '' : note,
+    lines: unheard ? lines.map((line) => ({ ...line, holds: undefined })) : lines,
     ...(moment?.e_s !== undefined && {
       before: {
         ...timeLine(`predicted at ${fromEntry(moment.e_s)}`, undefined, { e_s: moment.e_s }, now, store.entrySclk),
@@ -217,6 +220,9 @@ export function waitingFor(
       }),
   };
 }
+
+/** Of a sentence with more than one statement the first: "Not heard since E+3:00". */
+const firstClause = (sentence: string): string => sentence.split('; ')[0] ?? sentence;
 
 /** What says no more than the name is left out: "at cruise stage separation". */
 function neighbour(name: string, line: Line | undefined): Neighbour {

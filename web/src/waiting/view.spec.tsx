@@ -436,6 +436,33 @@ describe('waiting for', () => {
       lines: [],
     });
   });
+  it('does not wait for a step as if it could be heard while nothing can be and nothing predicted that', () => {
+    const now = (rank: 'news' | 'silence', plan = aPlan) =>
+      waitingFor(
+        aStore([
+          ...commanded,
+          firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }),
+          situation('2012-219T04:59:55.0', {
+            rank,
+            subject: 'vehicle',
+            sentence: 'Not heard since E−1:50; when the next word comes is not predicted',
+          }),
+        ]),
+        aDictionary,
+        plan,
+        Infinity,
+        [{ id: 2, name: 'parachute_deploy', e_s: 255, fired: false }],
+      );
+    const lost = now('news');
+    expect([lost.title, lost.words]).toEqual([
+      'Predicted: parachute deploy',
+      'Not heard since E−1:50: no word of it can come.',
+    ]);
+    expect(lost.lines.map(({ holds }) => holds)).toEqual(lost.lines.map(() => undefined));
+    expect(lost.lines[0]?.value).toMatch(/^in ≈ /);
+    const foreseen = now('silence');
+    expect([foreseen.title, foreseen.lines[0]?.holds]).toEqual(['Waiting for parachute deploy', false]);
+  });
   it('has a lower and an upper bound of one quantity as one range', () => {
     const thrust = (comparison: string, bound: number) =>
       create(ConditionSchema, { quantity: 'thrust_N', value: 3300, comparison, bound, holds: comparison === '<=' });
