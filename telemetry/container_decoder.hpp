@@ -76,7 +76,7 @@ bool is_end_of_packet(std::span<const std::uint8_t> packet, std::size_t entries_
 ///          primary header, with ...coarse... and ...fine... in their names, in any case, are the spacecraft's clock as
 ///          in CUC: counts and their binary fraction. [ccsds-301.0-b-4]
 /// Limits   `values_max` values a packet; containers and types nested `depth_max` deep
-/// Containers of simple layout have a faster decoder: telemetry/container_plan.hpp
+/// Channels have a faster decoder of most containers: telemetry/container_plan.hpp
 class ContainerDecoder {
   public:
     static constexpr std::size_t values_max = 65536;  ///< chosen: as many as the longest packet has octets

@@ -50,6 +50,10 @@ std::size_t utf8_character(Octets octets) {
 
 std::optional<std::string> from_utf8(Octets octets) {
     for (std::size_t at = 0; at < octets.size();) {
+        if (octets[at] < 0x80) {  // most are
+            ++at;
+            continue;
+        }
         const auto size = utf8_character(octets.subspan(at));
         if (size == 0) return std::nullopt;
         at += size;
