@@ -87,7 +87,10 @@ async function plotTimes({ address, cookies }) {
   return took_ms.sort((a, b) => a - b);
 }
 
-/** Milliseconds until the answer that "do edl" was released. */
+/**
+ * Milliseconds until the answer that "do edl" was released, of the request that was not refused. What becomes of it in
+ * flight is not looked at.
+ */
 async function doEdl({ ask, cookies }) {
   const send = (body) => ask('POST', '/runs/2/commands', body, cookies.dora);
   const parameters = await send({ command: 'EDL_SET_PARAMETERS', from_solution: true });
@@ -102,8 +105,8 @@ async function doEdl({ ask, cookies }) {
   throw new Error('do edl is refused for 30 s');
 }
 
-/** A subscription by hand: Node's own WebSocket is younger than Debian's Node. */
-function subscription(address, cookie) {
+/** A subscription by hand: Node's own WebSocket is younger than Debian's Node. Calls `opened` if it is granted. */
+function subscription(address, cookie, opened) {
   const { hostname, port } = new URL(address);
   const socket = connect(Number(port), hostname);
   const key = randomBytes(16).toString('base64');
@@ -112,7 +115,11 @@ function subscription(address, cookie) {
       `Sec-WebSocket-Key: ${key}\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Protocol: aeolis.v1.json\r\nCookie: ${cookie}\r\n\r\n`,
   );
   const text = Buffer.from(JSON.stringify({ subscribe: { run: '2', all_channels: true } }));
-  socket.once('data', () => socket.write(Buffer.concat([Buffer.from([0x81, 0x80 | text.length, 0, 0, 0, 0]), text])));
+  socket.once('data', (head) => {
+    if (!head.toString('latin1').startsWith('HTTP/1.1 101')) return;
+    opened();
+    socket.write(Buffer.concat([Buffer.from([0x81, 0x80 | text.length, 0, 0, 0, 0]), text]));
+  });
   socket.on('data', () => undefined);
   socket.on('error', () => undefined);
   return socket;
@@ -125,7 +132,7 @@ function subscription(address, cookie) {
 function takeAll({ address, cookies }) {
   const ask = askAt(address);
   let over = false;
-  const got = { questions: 0, refused: 0, commands: 0, limited: 0 };
+  const got = { questions: 0, refused: 0, commands: 0, limited: 0, subscriptions: 0 };
   const question = async () => {
     while (!over) {
       const { status } = await ask('GET', '/runs/1/proof', undefined, cookies.greta).catch(() => ({ status: 0 }));
@@ -144,13 +151,15 @@ function takeAll({ address, cookies }) {
       await Promise.all([pause(50), ...some]);
     }
   };
-  const sockets = Array.from({ length: subscriptions }, () => subscription(address, cookies.greta));
+  const sockets = Array.from({ length: subscriptions }, () =>
+    subscription(address, cookies.greta, () => ++got.subscriptions),
+  );
   const all = [flood(), ...Array.from({ length: slow_questions }, question)];
   parentPort.once('message', async () => {
     over = true;
     for (const socket of sockets) socket.destroy();
     await Promise.all(all);
-    parentPort.postMessage({ ...got, subscriptions: sockets.length });
+    parentPort.postMessage(got);
   });
 }
 

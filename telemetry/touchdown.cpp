@@ -15,6 +15,12 @@ namespace {
 
 using StepState = TouchdownStep::State;
 
+/// From entry, or SCLK where nobody knows when that was.
+std::string time_text(const TouchdownFacts& facts, Sclk sclk) {
+    return facts.entry == Sclk{} ? fmt::format("SCLK {:.1f}", sclk.seconds)
+                                 : from_entry_tenths_text(sclk - facts.entry);
+}
+
 void add_step(TouchdownJudgement& judged, std::string_view name, StepState state, std::string words,
               std::optional<Sclk> since = {}) {
     judged.steps.push_back({std::string{name}, state, std::move(words), since});
@@ -24,7 +30,7 @@ void add_told_step(const TouchdownFacts& facts, std::vector<TouchdownFacts::Repo
     constexpr std::string_view name = "touchdown told by the vehicle";
     std::ranges::stable_sort(told, {}, &TouchdownFacts::Report::sclk);
     const auto& first = told.front();
-    const auto when = [&](Sclk sclk) { return from_entry_tenths_text(sclk - facts.entry); };
+    const auto when = [&](Sclk sclk) { return time_text(facts, sclk); };
     if (facts.flag && facts.flag->value == 0.0 && facts.flag->sclk - first.sclk > touchdown_gap_s)
         return add_step(judged, name, StepState::contradicted,
                         fmt::format("{} at {}, but {} is 0 at {}", first.words, when(first.sclk), facts.flag_name,
@@ -53,7 +59,7 @@ void add_still_step(const TouchdownFacts& facts, Sclk since, TouchdownJudgement&
     if (!facts.rover_imu_known)
         return add_step(judged, name, StepState::never,
                         fmt::format("this mission sends no {} and {}", rover_rate_channel, rover_force_channel));
-    const auto when = [&](Sclk sclk) { return from_entry_tenths_text(sclk - facts.entry); };
+    const auto when = [&](Sclk sclk) { return time_text(facts, sclk); };
     const auto values = [](const TouchdownFacts::RoverImu& told) {
         return fmt::format("{} {:.4f}, {} {:.2f}", rover_rate_channel, told.rate_rps, rover_force_channel,
                            told.force_mps2);
@@ -96,7 +102,7 @@ void add_still_step(const TouchdownFacts& facts, Sclk since, TouchdownJudgement&
 
 void add_uhf_step(const TouchdownFacts& facts, Sclk since, TouchdownJudgement& judged) {
     const auto name = fmt::format("UHF came for {:.0f} s without a break after it", touchdown_uhf_s);
-    const auto when = [&](Sclk sclk) { return from_entry_tenths_text(sclk - facts.entry); };
+    const auto when = [&](Sclk sclk) { return time_text(facts, sclk); };
     const auto silent_between = [&](Sclk from, Sclk to) {
         return std::ranges::any_of(facts.silences,
                                    [&](const auto& each) { return each.from < to && (!each.to || *each.to > from); });

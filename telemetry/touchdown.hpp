@@ -50,7 +50,8 @@ struct TouchdownFacts {
         std::optional<Sclk> to;  ///< none: it goes on
         std::string words;
     };
-    Sclk entry, now;
+    Sclk entry;  ///< 0: nobody knows it
+    Sclk now;
     std::vector<Report> told;         ///< in any order
     std::string flag_name;            ///< of the channel that tells it
     std::optional<Flag> flag;         ///< its newest sample

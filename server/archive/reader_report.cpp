@@ -72,7 +72,13 @@ void add_predictions(const dictionary::Dictionary& dictionary, const v1::Timepoi
         if (predicted[i]) report.mutable_timepoints(static_cast<int>(i))->set_predicted_e_s(*predicted[i]);
 }
 
-void add_timepoints(const v1::TimepointList& timeline, const v1::ToneList& tones, double entry_sclk,
+/// Of a run; times from entry are left out where it is not known.
+struct KnownEntry {
+    double sclk_s = 0.0;  ///< 0: nobody knows it
+    bool is_known() const { return sclk_s != 0.0; }
+};
+
+void add_timepoints(const v1::TimepointList& timeline, const v1::ToneList& tones, const KnownEntry& entry,
                     v1::AsFlownReport& report) {
     std::optional<double> previous_sclk;
     for (const auto& row : timeline.timepoints()) {
@@ -82,9 +88,10 @@ void add_timepoints(const v1::TimepointList& timeline, const v1::ToneList& tones
         flown.set_verdict(row.verdict());
         const auto fired = fired_sclk(row);
         if (row.has_planned_e_s()) flown.set_planned_e_s(row.planned_e_s());
-        if (row.has_realtime_sclk()) flown.set_realtime_e_s(row.realtime_sclk() - entry_sclk);
-        if (row.has_recorded_sclk()) flown.set_recorded_e_s(row.recorded_sclk() - entry_sclk);
-        if (const auto told = told_by_tone(tones, row.tone(), fired)) flown.set_tone_e_s(*told - entry_sclk);
+        if (entry.is_known() && row.has_realtime_sclk()) flown.set_realtime_e_s(row.realtime_sclk() - entry.sclk_s);
+        if (entry.is_known() && row.has_recorded_sclk()) flown.set_recorded_e_s(row.recorded_sclk() - entry.sclk_s);
+        if (const auto told = told_by_tone(tones, row.tone(), fired); entry.is_known() && told)
+            flown.set_tone_e_s(*told - entry.sclk_s);
         if (fired && previous_sclk && row.has_minimum_offset_s())
             flown.set_margin_s(*fired - *previous_sclk - row.minimum_offset_s());
         if (fired) previous_sclk = fired;
@@ -111,7 +118,7 @@ std::string in_small_letters(std::string name) {
 
 /// Adds reported events of level "activity high", live or recorded. Events that a timepoint of the same name reports
 /// are left out; repeated names are numbered.
-Result<void> add_events(Reader& reader, RunId run, const v1::TimepointList& timeline, double entry_sclk,
+Result<void> add_events(Reader& reader, RunId run, const v1::TimepointList& timeline, const KnownEntry& entry,
                         v1::AsFlownReport& report) {
     EventQuery query;
     query.levels = {telemetry::name_of(dictionary::EventLevel::activity_hi)};
@@ -136,10 +143,11 @@ Result<void> add_events(Reader& reader, RunId run, const v1::TimepointList& time
             row.set_text(event.text());
             ++times[row.name()];
         }
+        if (!entry.is_known()) continue;
         if (event.source() == v1::SOURCE_REALTIME)
-            row.set_realtime_e_s(event.sclk() - entry_sclk);
+            row.set_realtime_e_s(event.sclk() - entry.sclk_s);
         else
-            row.set_recorded_e_s(event.sclk() - entry_sclk);
+            row.set_recorded_e_s(event.sclk() - entry.sclk_s);
     }
     for (auto& [key, row] : flown) {
         const auto anchor = std::ranges::find(timeline.anchors(), row.name(), &v1::AnchorRow::name);
@@ -167,10 +175,11 @@ Result<v1::AsFlownReport> Reader::as_flown(RunId run) {
     auto proven = proof(run);
     if (!proven) return proven.error();
     v1::AsFlownReport report;
-    add_timepoints(*timeline, *heard, state->entry_sclk(), report);
+    const KnownEntry entry{state->entry_sclk()};
+    add_timepoints(*timeline, *heard, entry, report);
     add_predictions(state_->dictionary, *timeline, *changes, *state,
                     report);  // timepoints() succeeds for this dictionary only
-    if (auto added = add_events(*this, run, *timeline, state->entry_sclk(), report); !added) return added.error();
+    if (auto added = add_events(*this, run, *timeline, entry, report); !added) return added.error();
     const auto decoded =
         std::ranges::count_if(heard->tones(), [](const v1::Item& item) { return item.tone().has_tone(); });
     report.set_tones_decoded(static_cast<std::uint64_t>(decoded));

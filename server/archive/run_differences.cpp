@@ -218,6 +218,10 @@ Result<v1::RunDifferences> differences(Reader& reader, const dictionary::Diction
     const auto one = reader.run(run), second = reader.run(other);
     if (!one) return one.error();
     if (!second) return second.error();
+    for (const auto* each : {&*one, &*second})
+        if (each->entry_sclk() == 0.0)
+            return Error{"runs are compared from entry, and nobody knows when run " + std::to_string(each->run()) +
+                         " has it"};
     *told.mutable_run() = *one;
     *told.mutable_other() = *second;
     const auto part = part_e_s(*one, *second);

@@ -26,6 +26,10 @@ struct ReportOptions {
 std::string from_entry(double e_s) {
     return fmt::format("E{:+.1f}", e_s);
 }
+/// From entry, or SCLK where nobody knows when that was.
+std::string time_text(const v1::RunState& run, double sclk) {
+    return run.entry_sclk() == 0.0 ? fmt::format("SCLK {:.1f}", sclk) : from_entry(sclk - run.entry_sclk());
+}
 std::string from_entry(bool known, double e_s) {
     return known ? from_entry(e_s) : "-";
 }
@@ -59,9 +63,10 @@ void print_links(const v1::AsFlownReport& report) {
     for (const auto& counted : report.proof().counters())
         fmt::print("{}: {} good frames, {} bad, {} missing in {} gaps.\n", counted.link(), counted.frames(),
                    counted.bad_crc() + counted.bad_header(), counted.missing_frames(), counted.gaps());
+    const auto when = [&](double e_s) { return time_text(report.run(), report.run().entry_sclk() + e_s); };
     for (const auto& silence : report.silences())
-        fmt::print("{} silent from {} to {}: {}\n", silence.link(), from_entry(silence.from_e_s()),
-                   silence.has_to_e_s() ? from_entry(silence.to_e_s()) : "the end", silence.reason());
+        fmt::print("{} silent from {} to {}: {}\n", silence.link(), when(silence.from_e_s()),
+                   silence.has_to_e_s() ? when(silence.to_e_s()) : "the end", silence.reason());
 }
 
 void print_proof(const v1::ProofReport& proof) {
@@ -90,7 +95,7 @@ std::string one_line(std::string text) {
 void print_notes(const v1::AsFlownReport& report) {
     for (const auto& item : report.notes()) {
         const auto& note = item.note();
-        const auto when = note.has_sclk() ? from_entry(note.sclk() - report.run().entry_sclk()) : note.at();
+        const auto when = note.has_sclk() ? time_text(report.run(), note.sclk()) : note.at();
         fmt::print("Note {} by {}: {}\n", when, one_line(note.by()), one_line(note.text()));
     }
 }
@@ -109,7 +114,7 @@ int print_explanations(archive::Reader& reader, archive::RunId run) {
     } while (query.after != 0);
     std::ranges::stable_sort(decisions, {}, [](const v1::Explanation& decision) { return decision.sclk(); });
     for (const v1::Explanation& decision : decisions)
-        fmt::print("{:>9}  {}\n", from_entry(decision.sclk() - state->entry_sclk()), decision.text());
+        fmt::print("{:>9}  {}\n", time_text(*state, decision.sclk()), decision.text());
     return 0;
 }
 

@@ -548,6 +548,7 @@ TEST_CASE("the octets of a landing's radio link become a run with the packets, v
                Catch::Contains("counts from entry, and nobody knows"));
     const auto lines = call("export --run 1 --channel altitude_m --archive" + path("e.db"));
     CHECK(lines.size() > 1000);
+    CHECK_THAT(call("report --run 1 --archive" + path("e.db")), !Catch::Contains("E+39"));  // SCLK begins so
     // A frame damaged on the way, and the end cut off.
     auto damaged = text_of("u.bin");
     for (std::size_t at = 20'000; at < 20'020; ++at) damaged[at] = static_cast<char>(~damaged[at]);

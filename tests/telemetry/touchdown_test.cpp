@@ -60,6 +60,15 @@ TEST_CASE("a touchdown is confirmed once all three signals are there, and not a 
           "E+7:21.0: still since E+7:11.0, now rover_imu_rate_rps 0.0007, rover_imu_force_mps2 3.71");
 }
 
+TEST_CASE("where nobody knows when entry was, a touchdown's times are those of the vehicle's clock", "[touchdown]") {
+    auto facts = heard_until(down_s + 11.0);
+    facts.entry = Sclk{};
+    for (const auto& step : judge_touchdown(facts).steps) {
+        CHECK_THAT(step.words, Catch::StartsWith("SCLK "));
+        CHECK_THAT(step.words, !Catch::Contains("E+"));
+    }
+}
+
 TEST_CASE("a touchdown of a mission without the rover's own IMU stays reported, however long UHF comes",
           "[touchdown]") {
     auto facts = heard_until(down_s + 60.0);

@@ -108,10 +108,12 @@ export function summaryOf(report: AsFlownReport): string {
   );
 }
 
-export function silenceWords(silence: AsFlownReport['silences'][number]): string {
+/** `entryKnown`: otherwise the silence's times count from SCLK 0. */
+export function silenceWords(silence: AsFlownReport['silences'][number], entryKnown = true): string {
+  const when = (e_s: number) => (entryKnown ? fromEntry(e_s) : `SCLK ${e_s.toFixed(1)}`);
   const to =
     silence.toES === undefined
       ? 'to the end'
-      : `to ${fromEntry(silence.toES)}, ${Math.round(silence.toES - silence.fromES)} s`;
-  return `${fromEntry(silence.fromES)} ${to}: ${silence.reason}`;
+      : `to ${when(silence.toES)}, ${Math.round(silence.toES - silence.fromES)} s`;
+  return `${when(silence.fromES)} ${to}: ${silence.reason}`;
 }

@@ -91,5 +91,8 @@ describe('the report', () => {
     expect(silenceWords(create(SilenceSchema, { link: 'x_band', reason: 'Earth has set', fromES: 300 }))).toBe(
       'E+5:00 to the end: Earth has set',
     );
+    expect(silenceWords(create(SilenceSchema, { link: 'uhf_live', reason: 'lost', fromES: 397500964.8 }), false)).toBe(
+      'SCLK 397500964.8 to the end: lost',
+    );
   });
 });

@@ -124,7 +124,7 @@ export function Flown() {
             <ul>
               {of.silences.map((silence) => (
                 <li key={`${silence.link}${silence.fromES}`}>
-                  {linkTitle(silence.link)}, {silenceWords(silence)}
+                  {linkTitle(silence.link)}, {silenceWords(silence, run.entryKnown)}
                 </li>
               ))}
             </ul>

@@ -10,25 +10,28 @@ interface StalenessAnswer {
 }
 export const recordedStaleness = signalOfRun<StalenessAnswer | undefined>(undefined);
 
-let answered: { run: RunStore; progress: number } | undefined;
+const AGAIN_MS = 5000; // chosen: while a recording comes down, since each answer reads all packets
 
-/** Asks again when the recording of the run shown has grown. After a failure the next round asks. */
+let answered: { run: RunStore; through: number; at_ms: number } | undefined;
+
+/** Asks once there are recorded values, and again when the run has grown. After a failure the next round asks. */
 export async function refreshStaleness(): Promise<void> {
   const run = store.value;
-  const progress = Math.ceil((run?.run.relayProgress ?? 0) * 20);
-  if (!run || progress === 0 || (answered?.run === run && answered.progress === progress)) return;
+  if (!run || run.recorded.size === 0) return;
+  const [through, at_ms] = [run.completeThrough, performance.now()]; // later items are for the next answer
+  if (answered?.run === run && (answered.through === through || at_ms - answered.at_ms < AGAIN_MS)) return;
   try {
     const answer = await read<StalenessAnswer>(`/runs/${run.id}/staleness`);
     if (store.value === run) recordedStaleness.value = answer;
   } catch (error) {
     if (!(error instanceof Refused && error.status === 400)) return; // 400: a run of another dictionary
   }
-  answered = { run, progress };
+  answered = { run, through, at_ms };
 }
 
 /**
- * Whether the newest values of a packet by `sclk`, which are of `sample_sclk`, were no longer of that instant. Of no
- * instant is known that they were until the server has answered.
+ * Whether the newest values of a packet by `sclk`, which are of `sample_sclk`, were no longer of that instant. Until the
+ * server has answered this is not known, and they count as stale.
  */
 export const wasStale = (packet: string, sclk: number, sample_sclk: number): boolean =>
   !recordedStaleness.value ||
