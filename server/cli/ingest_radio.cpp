@@ -340,9 +340,13 @@ int ingest_radio(IngestRadioOptions options) {
     const auto& name = options.files.front();
     const auto files = RecordedFiles::open(options.files, options.octets, told.value_or(Ert{}));
     if (!files) return failed(files.error().message, 2);
-    for (std::size_t i = 0; links->size() > 1 && i < options.files.size(); ++i)
-        if (!files->recordings()[i].is_capture())
+    for (std::size_t i = 0; i < options.files.size(); ++i) {
+        if (files->recordings()[i].is_capture()) continue;
+        if (links->size() > 1)
             return failed(options.files[i].string() + ": not a capture, so of one link; several are given", 2);
+        if (links->front().port)
+            return failed(options.files[i].string() + ": not a capture, so without ports: --link NAME is wanted", 2);
+    }
     auto sources = sources_of(options, *links, told.value_or(Ert{}));
     if (!sources) return failed(sources.error().message, 2);
     const auto first = first_time(*sources);

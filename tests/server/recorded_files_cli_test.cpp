@@ -538,6 +538,8 @@ TEST_CASE("the octets of a landing's radio link become a run with the packets, v
                Catch::Contains("no packet of our own mission is in it"));
     CHECK_THAT(call(ingest + path("d.db") + path("u.bin") + " --link uhf_live=4200 --link relay=4201", 2),
                Catch::Contains("u.bin: not a capture, so of one link"));
+    CHECK_THAT(call(ingest + path("d.db") + path("u.bin") + " --link uhf_live=4200", 2),
+               Catch::Contains("u.bin: not a capture, so without ports"));
     CHECK_FALSE(std::filesystem::exists(folder / "d.db"));
     CHECK_THAT(call(ingest + path("d.db") + path("all.pcap") + " --link uhf_live", 1),
                Catch::Contains("say which by --link NAME=PORT"));
