@@ -2,10 +2,10 @@
 // The ground under its design load.
 //
 // Each second 2000 packets of 1.5 kB are kept as they came, decoded, stored, and sent to a thousand clients that follow
-// 30 channels at 20 Hz and every event; one client is stalled. First all follow the same channels, then each has some of
-// its own. The first, a middle and the last client are watched, and the stalled one when it reads again. Then the same
-// once more, while programs ask for every list of the API at once: of the run itself, of one with 4096 commands, and of
-// what people made.
+// 30 channels at 20 Hz and every event; one client is stalled. First all follow the same channels, then each has some
+// of its own. The first, a middle and the last client are watched, and the stalled one when it reads again. Then the
+// same once more, while programs ask for every list of the API at once: of the run itself, of one with 4096 commands,
+// and of what people made.
 
 #include "bench/list_readers.hpp"
 #include "bench/loopback_clients.hpp"
@@ -51,7 +51,8 @@ constexpr std::size_t clients = 1000, watched = 4, watched_channels = 30;  // on
 constexpr std::size_t packet_kinds = 32, packets_per_s = 2000, channels_a_packet = 368;  // 1.5 kB
 constexpr std::size_t events_per_s = 10, tones_per_s = 1, stages_per_s = 2;
 constexpr int stalled_receive_octets = 4096;  // otherwise the kernel would read for it
-// With room for 4096 the sender learns only by its next probe, up to 12 s later, that there is room (ss: timer:(persist)).
+// From so little room the sender learns that there is some only by its next probe, which may be seconds later (ss -tino:
+// "timer:(persist"). Who reads on has an ordinary buffer.
 constexpr int reading_receive_octets = 1 << 18;
 constexpr double seconds = 10.0, seconds_with_lists_max = 60.0;
 constexpr double sample_rate_hz = 20.0;

@@ -126,8 +126,8 @@ function subscription(address, cookie, opened) {
 }
 
 /**
- * Takes all it can get, until it is told to end; then says what it got. In a thread of its own, so that the other client
- * does not wait for this one's answers to be read.
+ * Takes all it can get, until it is told to end; then says what it got. It has a thread of its own, so that the other
+ * client does not wait until this one's answers are read.
  */
 function takeAll({ address, cookies }) {
   const ask = askAt(address);
@@ -186,10 +186,12 @@ async function main() {
     const later_ms = command_ms - command_alone_ms;
     console.log(`beside it: ${JSON.stringify(got)}`);
     console.log(
-      `plot, p99 of ${plots}   alone ${plot_alone_ms.toFixed(1)} ms   beside ${plot_ms.toFixed(1)} ms   ratio ${slower.toFixed(2)}   goal ${goals.plot_ratio}, or ${goals.plot_ms} ms`,
+      `plot, p99 of ${plots}   alone ${plot_alone_ms.toFixed(1)} ms   beside ${plot_ms.toFixed(1)} ms   ` +
+        `ratio ${slower.toFixed(2)}   goal ${goals.plot_ratio}, or ${goals.plot_ms} ms`,
     );
     console.log(
-      `do edl released      alone ${command_alone_ms.toFixed(1)} ms   beside ${command_ms.toFixed(1)} ms   later ${later_ms.toFixed(1)} ms   goal ${goals.command_ms} ms`,
+      `do edl released      alone ${command_alone_ms.toFixed(1)} ms   beside ${command_ms.toFixed(1)} ms   ` +
+        `later ${later_ms.toFixed(1)} ms   goal ${goals.command_ms} ms`,
     );
     return (slower > goals.plot_ratio && plot_ms > goals.plot_ms) || later_ms > goals.command_ms;
   } finally {

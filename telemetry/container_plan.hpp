@@ -16,14 +16,16 @@
 
 namespace aeolis::telemetry {
 
-/// A decoder compiled once from the containers: of our own mission's packets (telemetry/decommutator.hpp) and of others'.
-/// Gives the same values as ContainerDecoder.
+/// A decoder compiled once from the containers, of our own mission's packets (telemetry/decommutator.hpp) and of
+/// others'. Gives the same values as ContainerDecoder.
 ///
-/// In       the octets of a packet, any octets     Out   true, and the decoded fields; or false: the packet is not whole,
-///          or its container is not compiled; use ContainerDecoder
+/// In       the octets of a packet, any octets
+/// Out      true, and the decoded fields; or false: the packet is not whole, or its container is not compiled; use
+///          ContainerDecoder
 /// Compiled numbers, labels, flags, times, texts and octets; aggregates, arrays and repetitions of them; entries that a
-///          condition includes, and places, sizes and counts that are told by numbers before them; values that are valid,
-///          or calibrated, by such numbers; containers in containers. container_plan_compiler.cpp says what is not
+///          condition includes, and places, sizes and counts that are told by numbers before them; values that are
+///          valid, or calibrated, by such numbers; containers in containers. container_plan_compiler.cpp says what is
+///          not
 /// Rate     half of what a decoder written by hand reaches, for repetitions a quarter (bench/mission_decode_bench.cpp)
 /// Memory   some 64 octets a field and container, at most 20 MB; what is beyond is not compiled
 /// Many threads may share one.

@@ -28,8 +28,8 @@ namespace aeolis::telemetry {
 /// Names    those of the file; of two equal names the later is prefixed with its SpaceSystem's path
 /// Time     the packet's own time, as if from the spacecraft's clock, none beyond 1e12 s; Decoded::timed says whether
 ///          there is one
-/// Rate     containers are compiled where they can be (telemetry/container_plan.hpp); others, packets that are not whole,
-///          and every packet where the caller names the place of the time, are looked up in the XTCE for each packet
+/// Rate     containers are compiled where they can be (telemetry/container_plan.hpp); others, packets that are not
+///          whole, and every packet where the caller names the place of the time, are looked up in the XTCE
 /// Faults   a partly readable packet is decoded in part; the rest is undefined, and Decoded::problem says why
 /// Many threads may share one.
 class OtherMission {

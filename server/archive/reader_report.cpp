@@ -177,8 +177,9 @@ Result<v1::AsFlownReport> Reader::as_flown(RunId run) {
     v1::AsFlownReport report;
     const KnownEntry entry{state->entry_sclk()};
     add_timepoints(*timeline, *heard, entry, report);
-    add_predictions(state_->dictionary, *timeline, *changes, *state,
-                    report);  // timepoints() succeeds for this dictionary only
+    if (entry.is_known())
+        add_predictions(state_->dictionary, *timeline, *changes, *state,
+                        report);  // timepoints() succeeds for this dictionary only
     if (auto added = add_events(*this, run, *timeline, entry, report); !added) return added.error();
     const auto decoded =
         std::ranges::count_if(heard->tones(), [](const v1::Item& item) { return item.tone().has_tone(); });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What ContainerPlan compiles, held against ContainerDecoder on seeded random packets: whole ones, and those that are an
-// octet shorter or longer.
+// What ContainerPlan compiles, held against ContainerDecoder on seeded random packets: whole ones, and those that are
+// an octet shorter or longer.
 #include "telemetry/container_plan.hpp"
 #include "telemetry/other_mission.hpp"
 #include "tests/support/catch.hpp"

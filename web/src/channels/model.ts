@@ -103,8 +103,8 @@ const ageOf = (store: RunStore, sample: Sample, cutoff: number): number =>
   );
 
 /**
- * As the ground says, packet by packet: of live values as they came, of recorded ones by all that has come. Nothing is of
- * now without a connection, nor after the end of a run.
+ * As the ground says, packet by packet: of live values as they came, of recorded ones by all that has come. Nothing is
+ * of now without a connection, nor after the end of a run.
  */
 function isStale(store: RunStore, channel: DictionaryChannel, sample: Sample, cutoff: number, lost: boolean): boolean {
   if (cutoff === Infinity && (lost || !store.going)) return true;

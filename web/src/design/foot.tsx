@@ -2,8 +2,8 @@
 import { useEffect, useRef } from 'preact/hooks';
 
 /**
- * The end of a list that scrolls, last in it. While it is out of sight the list has `data-goes-on`, and fades out at its
- * foot: no row ends in the middle of its letters.
+ * The end of a list that scrolls, last in it. While it is out of sight the list has `data-goes-on`, and fades out at
+ * its foot: no row ends in the middle of its letters.
  */
 export function Foot({ as: Tag = 'div' }: { as?: 'div' | 'li' }) {
   const end = useRef<HTMLElement & HTMLDivElement & HTMLLIElement>(null);

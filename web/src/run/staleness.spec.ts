@@ -25,7 +25,7 @@ describe('what was stale by the recording', () => {
     store.value = undefined;
   });
 
-  it('is asked for once something recorded has come, and after the last of it, also where no size was told', async () => {
+  it('is asked for once something recorded has come, and after the last of it, whatever size was told', async () => {
     store.value = aStore([samples(800, { 3: 1 })], aRun({ run: 5n, relayProgress: 0 }));
     await refreshStaleness();
     expect(asked).toEqual([]);

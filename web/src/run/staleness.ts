@@ -30,8 +30,8 @@ export async function refreshStaleness(): Promise<void> {
 }
 
 /**
- * Whether the newest values of a packet by `sclk`, which are of `sample_sclk`, were no longer of that instant. Until the
- * server has answered this is not known, and they count as stale.
+ * Whether the newest values of a packet by `sclk`, which are of `sample_sclk`, were no longer of that instant. Until
+ * the server has answered this is not known, and they count as stale.
  */
 export const wasStale = (packet: string, sclk: number, sample_sclk: number): boolean =>
   !recordedStaleness.value ||

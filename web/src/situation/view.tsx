@@ -10,8 +10,9 @@ import './style.css';
 
 /** Letters that have room in one line in the large size, at each width; more have the smaller one. */
 const ONE_LINE = 68;
-/** Letters of news that have room in the largest size beside what can be pressed; then, of a wait beside a countdown. */
+/** Letters of news that have room in the largest size beside what can be pressed. */
 const NEWS = 48;
+/** The same of what is waited for, which has a countdown. */
 const WAIT = 33;
 
 /** The evidence of an entry, which leads to its instant. */

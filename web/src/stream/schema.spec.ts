@@ -16,7 +16,8 @@ function fieldsOf(root: DescMessage, found = new Map<string, string[]>()): Map<s
     root.fields.map((field) => {
       const type = field.message ?? field.enum;
       const values = field.enum?.values.map((value) => `${value.name}=${value.number}`).join() ?? '';
-      return `${field.name} ${field.number} ${field.fieldKind} ${field.scalar ?? ''} ${type?.typeName ?? ''} ${values} ${field.presence}`;
+      const { name, number, fieldKind, scalar = '', presence } = field;
+      return [name, number, fieldKind, scalar, type?.typeName ?? '', values, presence].join(' ');
     }),
   );
   for (const { message } of root.fields) if (message) fieldsOf(message, found);
