@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The X-band carrier as ground's receiver has it: channels that the station makes, and the features of the flight that
 // its Doppler shows.
+import { staleWords } from '../channels/model';
 import { inWords } from '../run/dictionary';
 import type { Dictionary } from '../run/dictionary';
 import type { Series } from '../run/series';
 import type { RunStore } from '../run/store';
 import { fromEntry } from '../run/time';
 import { CARRIER } from './layout';
-
-const OLD_S = 4; // chosen: the receiver tells eight a second, up to 2.5 s late
 
 const seriesOf = (run: RunStore, words: Dictionary, names: readonly string[]): Series | undefined => {
   const channel = words.pick(names);
@@ -20,8 +19,8 @@ export const isKnown = (words: Dictionary | undefined): boolean => words?.pick(C
 
 const signed = (value: number, digits: number) => `${value < 0 ? '−' : '+'}${Math.abs(value).toFixed(digits)}`;
 
-/** What the receiver says of the carrier at `cutoff`: a sentence that claims nothing of the present once it is old. */
-export function carrierWords(run: RunStore, words: Dictionary, cutoff: number): string {
+/** What the receiver says of the carrier at `cutoff`: nothing of the present once the ground says that it is stale. */
+export function carrierWords(run: RunStore, words: Dictionary, cutoff: number, lost: boolean): string {
   const [lock, residual, sigma, rate, level] = [
     CARRIER.lock,
     CARRIER.residual,
@@ -34,7 +33,7 @@ export function carrierWords(run: RunStore, words: Dictionary, cutoff: number): 
   const state = (channel && words.label(channel, lock.value)) ?? String(lock.value);
   const at = fromEntry(lock.sclk - run.entrySclk);
   if (state === CARRIER.lost) return `lost since ${at}`;
-  const old = Math.min(run.seenSclk, cutoff) - lock.sclk > OLD_S;
+  const old = staleWords(run, channel, cutoff, lost) !== undefined;
   const said = old ? `last at ${at}: ${inWords(state)}` : inWords(state);
   if (!residual || residual.sclk !== lock.sclk || Number.isNaN(residual.value)) return `${said}, not found at ${at}`;
   const parts = [

@@ -7,7 +7,7 @@ import { DictionaryReplySchema } from '../gen/aeolis/v1/run_pb';
 import { Dictionary } from '../run/dictionary';
 import { dictionary, store } from '../run/shown';
 import { choice } from '../run/window';
-import { aRun, aStore, event, samples } from '../testing/fixtures';
+import { aRun, aStore, event, samples, silent } from '../testing/fixtures';
 import { featuresSeen } from '../timeline/model';
 import { carrierWords, isKnown, residualLines } from './model';
 import { draw } from './view';
@@ -18,6 +18,7 @@ const words = new Dictionary(
       {
         id: 1,
         name: 'carrier_lock',
+        packet: 'StationCarrier',
         labels: ['locked', 'fluctuating', 'coasting', 'searching'].map((label, i) => ({ value: BigInt(i), label })),
       },
       ...['carrier_residual_hz', 'carrier_sigma_hz', 'carrier_rate_hz_s', 'carrier_cn0_dbhz'].map((name, i) => ({
@@ -39,18 +40,22 @@ afterEach(() => {
 
 describe('the carrier', () => {
   it('is told with its deviation while it is found, and as old or lost when it is', () => {
-    expect(carrierWords(aStore(), words, Infinity)).toBe('no carrier was followed yet');
+    expect(carrierWords(aStore(), words, Infinity, false)).toBe('no carrier was followed yet');
     const found = aStore([estimate(899, -12.345)]);
-    expect(carrierWords(found, words, Infinity)).toBe(
+    expect(carrierWords(found, words, Infinity, false)).toBe(
       'locked · −12.35 Hz from the predict (deviation 0.07 Hz) · −0.4 Hz/s · C/N0 22.1 dB-Hz',
     );
-    const old = aStore([estimate(890, 3)], aRun());
-    expect(carrierWords(old, words, Infinity)).toContain('last at E−1:50: locked · +3.00 Hz');
+    const old = aStore([estimate(890, 3), silent('StationCarrier')]);
+    expect(carrierWords(old, words, Infinity, false)).toContain('last at E−1:50: locked · +3.00 Hz');
+    expect(carrierWords(found, words, Infinity, true), 'without a connection').toContain('last at E−1:41: locked');
+    expect(carrierWords(aStore([estimate(899, 3)], aRun({ state: 'finished' })), words, Infinity, false)).toContain(
+      'last at',
+    );
     const missed = aStore([estimate(898.875, 3), estimate(899)]);
-    expect(carrierWords(missed, words, Infinity)).toBe('coasting, not found at E−1:41');
+    expect(carrierWords(missed, words, Infinity, false)).toBe('coasting, not found at E−1:41');
     const lost = aStore([estimate(890, 3), estimate(892, NaN, 3)]);
-    expect(carrierWords(lost, words, Infinity)).toBe('lost since E−1:48');
-    expect(carrierWords(lost, words, 890.5)).toContain('locked · +3.00 Hz');
+    expect(carrierWords(lost, words, Infinity, false)).toBe('lost since E−1:48');
+    expect(carrierWords(lost, words, 890.5, false)).toContain('locked · +3.00 Hz');
   });
   it('is drawn through estimates alone: not over a gap, and not where it was not found', () => {
     const store = aStore([...eighths(800, 8, 1), estimate(801), ...eighths(801.125, 8, 2), ...eighths(820, 8, 3)]);

@@ -6,7 +6,7 @@ import { axisNumber, ticks, timeLabel, timeStep, valueTicks } from '../draw/axis
 import { Canvas } from '../draw/canvas';
 import type { Surface } from '../draw/canvas';
 import { seriesPath } from '../recorded/model';
-import { ask } from '../run/connection';
+import { ask, isLost } from '../run/connection';
 import { cursor } from '../run/cursor';
 import { cutoff, dictionary, shownRun, store, tick } from '../run/shown';
 import { fromEntry } from '../run/time';
@@ -98,7 +98,7 @@ export function Carrier() {
   useHistory();
   const [run, words] = [shownRun(), dictionary.value];
   if (!run || !words || !isKnown(words)) return null;
-  const said = carrierWords(run, words, cutoff.value);
+  const said = carrierWords(run, words, cutoff.value, isLost.value);
   return (
     <section class="carrier" data-testid="carrier">
       <h3>X-band carrier less its predict, in Hz</h3>

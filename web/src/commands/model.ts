@@ -149,23 +149,6 @@ export function rangeText(argument: DictionaryArgument): string {
   return `${min === undefined ? '' : numberText(min)} … ${max === undefined ? '' : numberText(max)}`;
 }
 
-export function compare(value: number, relation: string, bound: number): boolean {
-  switch (relation) {
-    case '==':
-      return value === bound;
-    case '!=':
-      return value !== bound;
-    case '<':
-      return value < bound;
-    case '<=':
-      return value <= bound;
-    case '>':
-      return value > bound;
-    default:
-      return value >= bound;
-  }
-}
-
 /** Uplink options as typed. */
 export interface UplinkText {
   service: '' | 'AD' | 'BD'; // '': automatic

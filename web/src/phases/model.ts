@@ -9,8 +9,6 @@ import { countdownWords } from '../situation/countdown';
 import { heardOf } from '../timeline/heard';
 import type { Prediction } from '../timeline/model';
 
-const LATE_S = 5; // chosen: as the server's, from when on a step that UHF tells is overdue
-
 interface PhaseStep {
   title: string;
   state: 'done' | 'now' | 'ahead';
@@ -125,10 +123,10 @@ function byTone(
   };
 }
 
-/** "parachute in ≈ 1 m 20 s", as far as it is predicted; what is late is "overdue since E+4:15". */
+/** "parachute in ≈ 1 m 20 s", as far as it is predicted; "overdue since E+4:15" where the server says so. */
 export function nextWords(steps: readonly PhaseStep[], seen_e_s: number): string {
   const next = steps[steps.findIndex((step) => step.state === 'now') + 1];
   if (next?.state !== 'ahead' || next.predicted_e_s === undefined) return '';
   const title = next.title.toLowerCase();
-  return countdownWords(title, next.predicted_e_s, seen_e_s, next.overdue ?? seen_e_s - next.predicted_e_s >= LATE_S);
+  return countdownWords(title, next.predicted_e_s, seen_e_s, next.overdue);
 }

@@ -51,12 +51,17 @@ describe('the strip of phases', () => {
     const moved = steps(['parachute_deploy', 400], ['powered_approach', 522]);
     expect(moved.map((step) => step.predicted_e_s)).toEqual([undefined, 0, 400, 522, 431.5]);
     expect(moved[1]?.part, 'of what is going on').toBeCloseTo(0.25);
-    expect([100, 400, 404.9, 405].map((seen_e_s) => nextWords(moved, seen_e_s))).toEqual([
+    expect([100, 400, 400.4, 405].map((seen_e_s) => nextWords(moved, seen_e_s))).toEqual([
       'parachute in ≈ 5 m 00 s',
       'parachute is due',
       'parachute is due',
-      'parachute overdue since E+6:40',
+      'parachute was predicted for E+6:40',
     ]);
+    const judged = (overdue: boolean) => moved.map((step) => ({ ...step, overdue }));
+    expect(
+      [false, true].map((overdue) => nextWords(judged(overdue), 405)),
+      'as the server says',
+    ).toEqual(['parachute is due', 'parachute overdue since E+6:40']);
   });
   it('claims no phase before the vehicle has spoken', () => {
     expect(phaseSteps(aStore(), aDictionary, aPlan, Infinity).every((step) => step.state === 'ahead')).toBe(true);

@@ -61,11 +61,12 @@ export function neighbour(
   return to >= all.length - 1 ? undefined : all[to];
 }
 
-const OLD_S = 40; // chosen: four symbols; the next would have arrived by then, decoded or not
-
-/** Whether the tone is too old, at `seen_sclk`, to be the vehicle's present report. */
-export const isOld = (tone: NamedTone | undefined, seen_sclk: number): boolean =>
-  tone !== undefined && seen_sclk - tone.sclk > OLD_S;
+/**
+ * Whether the newest tone is the last one heard and no present report: the ground says that X-band is silent. Nothing
+ * is of now without a connection (`lost`), nor after the end of a run.
+ */
+export const isLast = (store: RunStore, cutoff: number, lost: boolean): boolean =>
+  (cutoff === Infinity && (lost || !store.going)) || toneSilence(store, cutoff)?.up === false;
 
 /** The title: the present tone, or the last one heard and its time. */
 export function toneTitle(tone: NamedTone | undefined, last_e_s?: number): string {

@@ -9,7 +9,7 @@ import type { NamedTone } from '../stream/names';
 import { drawSpectrum } from './view';
 import {
   bestTones,
-  isOld,
+  isLast,
   latestTone,
   neighbour,
   shownTone,
@@ -57,10 +57,14 @@ describe('tones', () => {
     );
   });
   it('tell of a tone that is long past as the last one, with its time, not as what the vehicle says now', () => {
-    const last = named(tone({ sclk: 700, tone: 7, meaning: 'Entry interface' }).item) as NamedTone;
+    const heard = tone({ sclk: 700, tone: 7, meaning: 'Entry interface' });
+    const last = named(heard.item) as NamedTone;
     const lost = named(tone({ sclk: 700 }).item) as NamedTone;
-    expect([700, 740, 740.1].map((seen) => isOld(last, seen))).toEqual([false, false, true]);
-    expect(isOld(undefined, 900)).toBe(false);
+    const set = link({ link: 'x_band', up: false, reason: 'Earth has set', ert: '2012-219T04:59:00.0' });
+    const whether = (...more: Parameters<typeof aStore>[0] & object) =>
+      isLast(aStore([heard, ...more]), Infinity, false);
+    expect([whether(), whether(set)]).toEqual([false, true]);
+    expect(isLast(aStore([heard]), Infinity, true), 'without a connection').toBe(true);
     expect([toneTitle(last, -300), toneTitle(lost, -300)]).toEqual([
       'Last tone, E−5:00: 7 · Entry interface',
       'Last tone, E−5:00: not decoded',

@@ -7,13 +7,14 @@ import type { Surface } from '../draw/canvas';
 import { ticks, timeLabel, timeStep } from '../draw/axis';
 import { Panel } from '../design/panel';
 import type { NamedTone } from '../stream/names';
+import { isLost } from '../run/connection';
 import { cursor } from '../run/cursor';
 import { cutoff, shownRun, tick } from '../run/shown';
 import { fromEntry } from '../run/time';
 import { plotSpan } from '../run/window';
 import {
   bestTones,
-  isOld,
+  isLast,
   neighbour,
   shownTone,
   toneBars,
@@ -195,7 +196,7 @@ export function Tones() {
   const [run, tone] = [shownRun(), toneNow()];
   const back = tone !== undefined && tone.sclk === chosenSclk();
   const at_e_s = run && tone && tone.sclk - run.entrySclk;
-  const old = !back && run !== undefined && isOld(tone, Math.min(run.seenSclk, cutoff.value));
+  const old = !back && run !== undefined && tone !== undefined && isLast(run, cutoff.value, isLost.value);
   const title = toneTitle(tone, old ? at_e_s : undefined);
   return (
     <Panel

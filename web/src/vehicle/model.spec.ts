@@ -181,10 +181,10 @@ describe('the same as text', () => {
     expect(of('thrust')?.text).toBe('engines still inside the aeroshell');
     expect(figuresOf(...lookAndMotion(lookAt(0, [])))[0]).toMatchObject({ value: '—', note: 'not received yet' });
   });
-  it('never counts down to what is overdue, or to what is not predicted', () => {
+  it('never counts down to what is past, or to what is not predicted', () => {
     expect(dueWords(100, 88)).toEqual({ value: '≈ 12 s', note: '≈ E+1:40' });
     expect(dueWords(100, 100.4).value).toBe('due');
-    expect(dueWords(100, 103)).toEqual({ value: '+3 s', note: 'overdue since ≈ E+1:40' });
+    expect(dueWords(100, 103)).toEqual({ value: '+3 s', note: 'was predicted for ≈ E+1:40' });
     expect(dueWords(undefined, 3)).toEqual({ value: '—', note: 'time not predicted' });
   });
 });

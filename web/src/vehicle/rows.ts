@@ -5,6 +5,7 @@ import { LAYOUT } from '../layout';
 import type { Dictionary } from '../run/dictionary';
 import { inWords } from '../run/dictionary';
 import { duration, fromEntry } from '../run/time';
+import { DUE_S } from '../situation/countdown';
 import { heardOf, lastHeard } from '../timeline/heard';
 import { isImportant, title } from '../timeline/model';
 import { VEHICLE } from './layout';
@@ -121,16 +122,14 @@ export function nextEvent(look: Look): { name: string; e_s: number | undefined }
   return next && { name: title(next.name), e_s: next.predictedES };
 }
 
-const ENOUGH_S = 1; // chosen: a prediction that is due within this is due now
-
-/** "in ≈ 12 s", "was due 3 s ago": never a time that is not known. */
+/** "≈ 12 s" ahead, "+3 s" past what was predicted: never a time that is not known, and no judgement. */
 export function dueWords(e_s: number | undefined, now_e_s: number): { value: string; note: string } {
   if (e_s === undefined) return { value: '—', note: 'time not predicted' };
   const left = e_s - now_e_s;
   const note = `≈ ${fromEntry(e_s)}`;
-  if (left >= ENOUGH_S) return { value: `≈ ${duration(left).replace(/\.\d s/, ' s')}`, note };
-  if (left > -ENOUGH_S) return { value: 'due', note };
-  return { value: `+${duration(-left).replace(/\.\d s/, ' s')}`, note: `overdue since ${note}` };
+  if (left >= DUE_S) return { value: `≈ ${duration(left).replace(/\.\d s/, ' s')}`, note };
+  if (left > -DUE_S) return { value: 'due', note };
+  return { value: `+${duration(-left).replace(/\.\d s/, ' s')}`, note: `was predicted for ${note}` };
 }
 
 /** The three large numbers. */

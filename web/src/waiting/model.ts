@@ -5,14 +5,13 @@ import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
 import { staleWords } from '../channels/model';
 import { touchdownKnown } from '../touchdown/shown';
 import { outcomeWords } from '../clocks/model';
-import { compare } from '../commands/model';
 import { LAYOUT } from '../layout';
 import { canContinue } from '../mode/model';
 import { inWords, numberText } from '../run/dictionary';
 import type { Dictionary } from '../run/dictionary';
 import type { CommandRow, RunStore } from '../run/store';
 import { duration, fromEntry, secondsOfErt } from '../run/time';
-import { roughly } from '../situation/countdown';
+import { DUE_S, roughly } from '../situation/countdown';
 import { entriesAt, isAmiss } from '../situation/model';
 import { heardOf, lastHeard, speaksOf } from '../timeline/heard';
 import { isImportant, nextTimepoint } from '../timeline/model';
@@ -105,7 +104,7 @@ export function conditionLine({ quantity, value, comparison, bound, holds }: Com
   };
 }
 
-type Compared = Pick<Condition, 'quantity' | 'value' | 'comparison' | 'bound' | 'holds'>;
+type Compared = Pick<Condition, 'quantity' | 'value' | 'comparison' | 'bound'> & Pick<Line, 'holds'>;
 
 /** Conditions in words; a lower and an upper bound of one quantity are one range. */
 export function conditionLines(all: readonly Compared[]): Line[] {
@@ -477,7 +476,10 @@ export function conditions(
   return [...lines, ...watched(store, dictionary, row.name, cutoff)];
 }
 
-/** The known comparisons for the timepoint of this name. A stale value says its age and satisfies nothing. */
+/**
+ * The known comparisons for the timepoint of this name: value beside bound. Whether one holds is for flight to say; a
+ * stale value says its age.
+ */
 function watched(store: RunStore, dictionary: Dictionary, name: string, cutoff: number): Line[] {
   const sample = (channel: string) => {
     const known = dictionary.pick([channel]);
@@ -487,15 +489,9 @@ function watched(store: RunStore, dictionary: Dictionary, name: string, cutoff: 
     const bound = sample(by)?.value ?? NaN;
     const is = sample(channel);
     if (timepoint !== name || Number.isNaN(bound) || !is || Number.isNaN(is.value)) return [];
-    const line = conditionLine({
-      quantity: channel,
-      value: is.value,
-      comparison,
-      bound,
-      holds: compare(is.value, comparison, bound),
-    });
+    const line = conditionLine({ quantity: channel, value: is.value, comparison, bound, holds: undefined });
     const stale = staleWords(store, dictionary.pick([channel]), cutoff, false);
-    return stale === undefined ? [line] : [{ ...line, value: `${line.value}, ${stale}`, holds: undefined }];
+    return stale === undefined ? [line] : [{ ...line, value: `${line.value}, ${stale}` }];
   });
 }
 
@@ -522,10 +518,10 @@ function timeLine(
       value: due_sclk === undefined ? 'no word yet' : 'not yet',
       holds: due_sclk === undefined ? undefined : false,
     };
-  const isOverdue = !told && left <= 0 && (foreseen?.overdue ?? left < -LATE_S);
-  const value = isOverdue
-    ? `overdue since ${fromEntry(foreseen?.e_s ?? NaN)}`
-    : left < 0.5
+  const isPast = !told && left <= -DUE_S && foreseen !== undefined && foreseen.overdue !== false;
+  const value = isPast
+    ? `${foreseen.overdue ? 'overdue since' : 'was predicted for'} ${fromEntry(foreseen.e_s)}`
+    : left < DUE_S
       ? 'is due'
       : told
         ? `in ${duration(left)}`
@@ -533,7 +529,6 @@ function timeLine(
   return { words, value, holds: false };
 }
 
-const LATE_S = 5; // chosen: as the server's, from when on a step that UHF tells is overdue
 // chosen: an older explanation no longer says what holds the decision now, and an older time belongs to another
 // timepoint
 const FRESH_S = 5;

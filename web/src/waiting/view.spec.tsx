@@ -197,7 +197,7 @@ describe('waiting for', () => {
     expect(now(firing({ timepoint: 1, name: 'sufr', firedSclk: 898 })).title).toBe('Waiting for parachute deploy');
     predictForTest(create(PredictionSchema, {}));
   });
-  it('knows nothing of what is compared once it is stale, nor of any condition while nothing comes', () => {
+  it('shows a value beside its bound without a judgement of its own, with its age once it is stale, and no condition while nothing comes', () => {
     const words = new Dictionary({
       ...aDictionary.reply,
       channels: [...aDictionary.channels, create(DictionaryChannelSchema, { id: 9, name: 'parachute_speed_mps' })],
@@ -213,12 +213,22 @@ describe('waiting for', () => {
     const watched = (sclk: number, ...more: Item[]) =>
       waitingFor(store(sclk, ...more), words, aPlan, Infinity).lines.at(-1);
     expect([watched(899), watched(859, silent('Navigation'))]).toEqual([
-      { words: 'speed ≤ 405 m/s', value: '400 m/s', holds: true, quantity: 'speed_mps' },
+      { words: 'speed ≤ 405 m/s', value: '400 m/s', holds: undefined, quantity: 'speed_mps' },
       { words: 'speed ≤ 405 m/s', value: '400 m/s, ◌ 41 s', holds: undefined, quantity: 'speed_mps' },
     ]);
+    const met = create(ConditionSchema, {
+      quantity: 'speed_mps',
+      value: 400,
+      comparison: '<=',
+      bound: 405,
+      holds: true,
+    });
     const root = document.createElement('div');
     act(() => {
-      useForTest(store(899), words);
+      useForTest(
+        store(899, explanation({ sclk: 899, decision: 'parachute', verdict: 'held', conditions: [met] })),
+        words,
+      );
       timepoints.value = aPlan;
       render(<WaitingFor />, root);
     });
