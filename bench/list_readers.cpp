@@ -1,46 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/list_readers.hpp"
 
+#include "bench/loopback_request.hpp"
 #include "bench/must.hpp"
 
-#include <algorithm>
-#include <arpa/inet.h>
 #include <chrono>
 #include <csignal>
 #include <cstring>
-#include <netinet/in.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
-#include <sys/socket.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
 #include <utility>
 
 namespace aeolis::bench {
-namespace {
-
-/// Sends a request and reads its answer to the end. @return the answer's octets, its first line in `status`
-std::uint64_t answer_octets(std::uint16_t port, const std::string& request, std::string& status) {
-    const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(port);
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    must(::connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0, "connect");
-    must(::send(socket, request.data(), request.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(request.size()), "send");
-    std::uint64_t octets = 0;
-    std::array<char, 64 << 10> buffer{};
-    for (ssize_t got = 0; (got = ::recv(socket, buffer.data(), buffer.size(), 0)) > 0;) {
-        if (octets == 0) status.assign(buffer.data(), static_cast<std::size_t>(std::min<ssize_t>(got, 12)));
-        octets += static_cast<std::uint64_t>(got);
-    }
-    ::close(socket);
-    return octets;
-}
-
-}  // namespace
-
 ListReaders::ListReaders(std::vector<std::string> targets) {
     void* const shared =
         ::mmap(nullptr, sizeof(SharedCounters), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -77,16 +51,12 @@ void ListReaders::read_lists(SharedCounters& counters, std::size_t reader, const
     using Clock = std::chrono::steady_clock;
     for (std::size_t i = 0; i < targets.size(); ++i) {
         const auto& target = targets[(i + reader * targets.size() / readers) % targets.size()];
-        std::string status;
         const auto asked = Clock::now();
-        const auto octets = answer_octets(counters.port,
-                                          "GET " + target + " HTTP/1.1\r\nHost: 127.0.0.1\r\nAuthorization: Bearer " +
-                                              counters.tokens[reader].data() + "\r\nConnection: close\r\n\r\n",
-                                          status);
+        const auto answered = answer_of(counters.port, request_text("GET", target, counters.tokens[reader].data()));
         const auto waited = std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - asked).count();
         ++counters.answers;
-        counters.octets += octets;
-        if (status != "HTTP/1.1 200") ++counters.refused;
+        counters.octets += answered.octets;
+        if (answered.status != 200) ++counters.refused;
         for (auto longest = counters.longest_us.load(); std::cmp_less(longest, waited);)
             if (counters.longest_us.compare_exchange_weak(longest, static_cast<std::uint64_t>(waited))) break;
     }

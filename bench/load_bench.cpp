@@ -4,9 +4,11 @@
 // Each second 2000 packets of 1.5 kB are kept as they came, decoded, stored, and sent to a thousand clients that follow
 // 30 channels at 20 Hz and every event; one client is stalled. First all follow the same channels, then each has some
 // of its own. The first, a middle and the last client are watched, and the stalled one when it reads again. Then the
-// same once more, while programs ask for every list of the API at once: of the run itself, of one with 4096 commands,
-// and of what people made.
+// same once more, while a client asks 60 slow questions at a time, one sends 1000 commands a second, which are checked
+// and refused as there is no vehicle, and one replays the run before; and once while programs ask for every list of the
+// API at once: of the run itself, of one with 4096 commands, and of what people made.
 
+#include "bench/greedy_clients.hpp"
 #include "bench/list_readers.hpp"
 #include "bench/loopback_clients.hpp"
 #include "bench/must.hpp"
@@ -239,6 +241,8 @@ void goal(const std::string& what, double figure, double most, const char* unit)
 /// A client's subscription to 30 channels: all of the first kind of packet, or ten of each of three kinds, different
 /// for each client.
 enum class Channels { same, own };
+/// What else is asked of the server under the load.
+enum class Beside { nothing, greedy_clients, every_list };
 std::string subscription_of(std::size_t client, Channels channels) {
     v1::ClientMessage message;
     auto& subscribe = *message.mutable_subscribe();
@@ -249,6 +253,15 @@ std::string subscription_of(std::size_t client, Channels channels) {
     }
     subscribe.set_max_rate_hz(sample_rate_hz);
     subscribe.set_without_units(true);
+    return message.SerializeAsString();
+}
+
+/// Of the run before, at its pace.
+std::string replay_of_old_run() {
+    v1::ClientMessage message;
+    message.mutable_subscribe()->set_run(1);
+    message.mutable_subscribe()->set_all_channels(true);
+    message.mutable_subscribe()->set_pace(1.0);
     return message.SerializeAsString();
 }
 
@@ -271,9 +284,9 @@ std::vector<std::string> list_targets() {
 }
 
 /// The API over the threads of the load, and who asks: people with a token each.
-struct ListServer {
-    ListServer(const std::filesystem::path& folder, const dictionary::Dictionary& dictionary,
-               server::QueryThreads& queries, server::PipelineThread& pipeline, server::StreamHub& hub)
+struct ApiServer {
+    ApiServer(const std::filesystem::path& folder, const dictionary::Dictionary& dictionary,
+              server::QueryThreads& queries, server::PipelineThread& pipeline, server::StreamHub& hub)
         : plans({}, dictionary), console(folder / "web"),
           rehearsals(
               scenarios, plans, dictionary, pipeline, [](const auto& action) { action(); },
@@ -336,16 +349,20 @@ void write_old_run(const std::filesystem::path& file, const dictionary::Dictiona
 }
 
 /// Runs threads and connections as in `aeolis serve`, with packets made here in place of a landing's.
-void under_load(Channels channels, bool with_lists) {
+void under_load(Channels channels, Beside beside) {
+    const bool with_lists = beside == Beside::every_list, with_greedy = beside == Beside::greedy_clients;
+    const bool with_api = beside != Beside::nothing;
     std::array<LoopbackClients, 2> others;  // clients that join between the first and the middle one, and after it
     std::optional<ListReaders> readers;
     if (with_lists) readers.emplace(list_targets());
+    std::optional<GreedyClients> greedy;
+    if (with_greedy) greedy.emplace();
     spdlog::set_level(spdlog::level::err);
     ::mallopt(M_MMAP_THRESHOLD, server::ConsoleBackend::mapped_octets);  // as `aeolis serve`
     const test::TemporaryFolder folder;
     const auto file = folder / "load.db";
     const auto dictionary = load();
-    if (with_lists) write_old_run(file, dictionary);
+    if (with_api) write_old_run(file, dictionary);
     auto archive = std::move(archive::Archive::open(file)).value();
     auto queries = std::move(server::QueryThreads::open(file, dictionary)).value();
     std::unique_ptr<server::WebServer> web;
@@ -362,10 +379,10 @@ void under_load(Channels channels, bool with_lists) {
         if (!taken) web->post([done] { done(Error{server::QueryThreads::busy}); });
     };
     server::StreamHub hub{dictionary.id, services};
-    std::optional<ListServer> lists;
+    std::optional<ApiServer> api;
     server::WebServer::Handlers handlers;
     handlers.request = [&](server::HttpRequest request, const server::Respond& respond) {
-        lists->api.handle(std::move(request), respond);
+        api->api.handle(std::move(request), respond);
     };
     handlers.admit_stream = [](const server::Credentials&) { return server::HttpResponse{}; };
     handlers.open_stream = [&](const server::Credentials&, server::StreamFormat format, std::function<void()> wake) {
@@ -376,7 +393,7 @@ void under_load(Channels channels, bool with_lists) {
         std::move(archive), dictionary, server::PipelineThread::Faults::give_up, [&](auto batch) {
             web->post([&hub, batch = std::move(batch)]() mutable { hub.published(std::move(batch)); });
         }};
-    if (with_lists) lists.emplace(folder.path(), dictionary, *queries, pipeline, hub);
+    if (with_api) api.emplace(folder.path(), dictionary, *queries, pipeline, hub);
     std::thread network{[&] { web->run(); }};
     const auto run = pipeline.begin({});
     must(run.ok(), "begin");
@@ -409,6 +426,10 @@ void under_load(Channels channels, bool with_lists) {
         BitWriter bits{std::span<std::uint8_t>(octets).subspan(tm_data_offset_octets)};
         for (std::size_t i = 0; i < channels_a_packet; ++i)
             bits.put_float(static_cast<float>(std::sin(static_cast<double>(i))));
+        const std::string path = "/api/v1/runs/" + std::to_string(run->value);
+        if (greedy) greedy->begin(web->port(), {path + "/proof", api->tokens[0], path + "/commands", api->tokens[1]});
+        std::optional<Watcher> replaying;
+        if (greedy) replaying.emplace("the one that replays", web->port(), replay_of_old_run());
         const double begin = now_s();
         bool lists_begun = false;
         double lists_s = 0.0;
@@ -416,7 +437,7 @@ void under_load(Channels channels, bool with_lists) {
             server::Delivery delivery;
             const double now = now_s();
             if (readers && !lists_begun && now - begin > lists_from_s) {
-                readers->begin(web->port(), lists->tokens);
+                readers->begin(web->port(), api->tokens);
                 lists_begun = true;
             }
             if (lists_begun && lists_s == 0.0 && readers->over()) lists_s = now - begin - lists_from_s;
@@ -473,6 +494,16 @@ void under_load(Channels channels, bool with_lists) {
                 "%.1f s\n",
                 ListReaders::readers, people, list_targets().size(), static_cast<double>(readers->octets()) * 1e-6,
                 lists_s, 1e-3 * readers->longest_ms());
+        if (greedy)
+            std::printf(
+                "  beside them %llu answers to slow questions and %llu refusals, %llu commands of which %llu got 429, "
+                "%llu stages replayed\n",
+                static_cast<unsigned long long>(greedy->answers()), static_cast<unsigned long long>(greedy->refused()),
+                static_cast<unsigned long long>(greedy->commands()), static_cast<unsigned long long>(greedy->limited()),
+                static_cast<unsigned long long>(replaying->stages.load()));
+        if (greedy)
+            goal("clients beside them that got nothing", greedy->answers() > 0 && replaying->stages > 0 ? 0.0 : 1.0,
+                 0.0, "");
         std::printf("  to the clients %.1f MB/s; delivery waited for the archive %.0f ms at most\n",
                     static_cast<double>(others[0].octets() + others[1].octets()) / lasted_s * 1e-6, 1e3 * behind_s);
         for (Watcher* each : all) {
@@ -517,22 +548,25 @@ void under_load(Channels channels, bool with_lists) {
     const double raw_kept = raw_links.empty() ? 0.0 : static_cast<double>(raw_links.front().octets);
     std::printf("  %.1f MB kept as they came\n", raw_kept * 1e-6);
     goal("octets that are not in the archive as they came", static_cast<double>(raw_octets) - raw_kept, 0.0, "");
+    greedy.reset();
     web->stop();
     network.join();
     queries.reset();
-    lists.reset();
+    api.reset();
 }
 
 }  // namespace
 
 int main() {
-    for (const auto& [channels, with_lists] :
-         {std::pair{Channels::same, false}, {Channels::own, false}, {Channels::own, true}}) {
+    for (const auto& [channels, beside] : {std::pair{Channels::same, Beside::nothing},
+                                           {Channels::own, Beside::nothing},
+                                           {Channels::own, Beside::greedy_clients},
+                                           {Channels::own, Beside::every_list}}) {
         // each in its own process, with its own heap
         const pid_t child = ::fork();
         must(child >= 0, "fork");
         if (child == 0) {
-            under_load(channels, with_lists);
+            under_load(channels, beside);
             std::fflush(stdout);
             ::_exit(met ? 0 : 1);
         }

@@ -51,10 +51,10 @@ std::string same_person(std::string_view name) {
 CommandGateway::CommandGateway(const dictionary::Dictionary& dictionary, double light_time_s,
                                std::vector<NamedValue> solution, std::vector<std::string> second_person,
                                TrackingSchedule stations, std::optional<Scet> entry,
-                               std::optional<ClockCorrelation> clock)
-    : dictionary_(dictionary), light_time_s_(light_time_s), clcw_(clcw_places(dictionary)), link_(light_time_s),
-      solutions_(std::move(solution)), second_person_(std::move(second_person)), stations_(std::move(stations)),
-      deadlines_(dictionary, entry, light_time_s), judge_(dictionary), clock_(clock),
+                               std::optional<ClockCorrelation> clock, double downlink_bps)
+    : dictionary_(dictionary), light_time_s_(light_time_s), clcw_(clcw_places(dictionary)), pace_(downlink_bps),
+      link_(light_time_s), solutions_(std::move(solution)), second_person_(std::move(second_person)),
+      stations_(std::move(stations)), deadlines_(dictionary, entry, light_time_s), judge_(dictionary), clock_(clock),
       heard_(dictionary.channels.size()) {}
 
 std::vector<CommandGateway::FieldPlace> CommandGateway::clcw_places(const dictionary::Dictionary& dictionary) {

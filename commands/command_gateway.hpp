@@ -8,6 +8,7 @@
 #include "commands/planned_deadlines.hpp"
 #include "commands/port.hpp"
 #include "commands/preconditions.hpp"
+#include "commands/release_pace.hpp"
 #include "commands/request.hpp"
 #include "commands/solution_judge.hpp"
 #include "commands/timeline_judge.hpp"
@@ -35,7 +36,8 @@ namespace aeolis::commands {
 ///          released → radiated (commands/command_link); from then on commands/lifecycle follows the evidence in
 ///          telemetry
 /// Memory   at most `commands_max` commands under way, a few kilooctets each; the latest value of each channel
-/// Shares   nobody has more commands under way than places are free: commands/shares
+/// Shares   nobody has more commands under way than places are free: commands/shares; those that may wait leave no
+///          faster than their answers can come down: commands/release_pace
 /// Faults   a refused request has no number, changes nothing, and the reply names the check and its values
 /// Timeline commands that change the timeline leave in the order of their numbers, as they were analysed. When one
 ///          fails, those behind it wait until the server has analysed the timeline without it. Each is judged when it
@@ -47,15 +49,18 @@ class CommandGateway {
   public:
     static constexpr std::size_t commands_max = 4096;  ///< under way at a time. Our assumption: a landing needs two
     /// Limits of commands at the uplink and of CLTUs radiated in a cycle: the vehicle's receiver holds eight, and hands
-    /// two a cycle to the flight software.
+    /// two a cycle to the flight software. Commands that may wait are handed over only as many as leave in a cycle, so
+    /// that one that passes ahead finds no more before it.
     static constexpr std::size_t at_uplink_max = 8, radiated_a_cycle_max = 2;
 
     /// `second_person`: names of commands that need the approval of a controller other than the one who asked.
     /// `stations`: nothing leaves while none of them sees the vehicle. `entry`: predicted when the run begins; without
-    /// it no deadlines are reported. `clock`: the vehicle's; without it, arrival in SCLK is unknown.
+    /// it no deadlines are reported. `clock`: the vehicle's; without it, arrival in SCLK is unknown. `downlink_bps`:
+    /// what carries the vehicle's answers.
     CommandGateway(const dictionary::Dictionary& dictionary, double light_time_s, std::vector<NamedValue> solution,
                    std::vector<std::string> second_person = {}, TrackingSchedule stations = {},
-                   std::optional<Scet> entry = {}, std::optional<ClockCorrelation> clock = {});
+                   std::optional<Scet> entry = {}, std::optional<ClockCorrelation> clock = {},
+                   double downlink_bps = 8000.0);
 
     /// Replaces ground's navigation solution.
     void renew_solution(std::vector<NamedValue> solution) { solutions_.renew(std::move(solution)); }
@@ -213,6 +218,7 @@ class CommandGateway {
     double light_time_s_;
     std::vector<FieldPlace> clcw_;  ///< places of the CLCW in telemetry, one a computer; none in a dictionary without
     CommandQueue queue_;
+    ReleasePace pace_;
     CommandLink link_;
     Uplink uplinks_;
     SolutionJudge solutions_;

@@ -75,7 +75,8 @@ std::vector<std::uint64_t> CommandQueue::take_all() {
     return all;
 }
 
-std::optional<std::uint64_t> CommandQueue::take_next(Ert now) {
+std::optional<std::uint64_t> CommandQueue::take_next(Ert now, bool ahead_alone) {
+    if (ahead_alone && std::ranges::none_of(entries_, &Entry::ahead)) return {};
     std::set<std::string_view> seen;  // an asker's first due command is the one to compare
     const auto rank = [&](const Entry& entry) {
         const auto turn = last_turn_.find(entry.asker);
@@ -87,7 +88,7 @@ std::optional<std::uint64_t> CommandQueue::take_next(Ert now) {
         seen.insert(entry->asker);
         if (next == entries_.end() || rank(*entry) < rank(*next)) next = entry;
     }
-    if (next == entries_.end()) return {};
+    if (next == entries_.end() || (ahead_alone && !next->ahead)) return {};
     const Entry taken = *next;
     entries_.erase(next);
     if (std::ranges::find(entries_, taken.asker, &Entry::asker) == entries_.end())

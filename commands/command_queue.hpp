@@ -50,7 +50,8 @@ class CommandQueue {
     /// Whether the command waits for nothing else and can be taken out now.
     bool due(std::uint64_t number, Ert now) const;
     /// Takes out the next command to leave; none: none is due.
-    std::optional<std::uint64_t> take_next(Ert now);
+    /// @param ahead_alone  of those that pass ahead
+    std::optional<std::uint64_t> take_next(Ert now, bool ahead_alone = false);
     /// Takes out all commands in the order of leaving.
     std::vector<std::uint64_t> take_all();
     /// Postpones the due commands to `until`; returns their numbers.

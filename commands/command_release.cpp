@@ -20,8 +20,10 @@ void CommandGateway::release_due(Ert now, std::vector<StageReport>& stages) {
     if (!stations_.sees(now)) return await_pass(now, stages);
     begin_pass(now, stages);
     while (link_.waiting() < at_uplink_max) {
-        const auto number = queue_.take_next(now);
+        const bool room = pace_.has_room(now) && link_.waiting() < radiated_a_cycle_max;
+        const auto number = queue_.take_next(now, !room);
         if (!number) break;
+        pace_.count();
         auto* command = underway(*number);
         if (command == nullptr) continue;
         const std::string failing = failing_now(*command, now);

@@ -23,7 +23,7 @@ Result<void> Fop::send(std::uint64_t tag, std::span<const std::uint8_t> data, Se
                      std::to_string(data.size())};
     if (waiting() + outstanding() >= frames_max)
         return Error{std::to_string(frames_max) + " telecommand frames wait already"};
-    Item item{tag, {data.begin(), data.end()}};
+    Item item{tag, ++sent_, {data.begin(), data.end()}};
     (service == Service::expedited ? expedited_ : waiting_).push_back(std::move(item));
     return {};
 }
@@ -51,20 +51,26 @@ std::optional<Fop::Outgoing> Fop::next() {
         controls_.pop_front();
         return control(std::move(command));
     }
-    if (!expedited_.empty()) {
+    Item* const sequenced = next_sequenced();
+    if (!expedited_.empty() && (sequenced == nullptr || expedited_.front().order < sequenced->order)) {
         Item item = std::move(expedited_.front());
         expedited_.pop_front();
         reports_.push_back({item.tag, Fate::radiated, 1});
         return radiate(item, true);
     }
-    if (state_ != State::active && state_ != State::retransmitting) return std::nullopt;
-    const auto due = std::ranges::find_if(outstanding_, &Item::due);
-    if (due != outstanding_.end()) return radiate(*due, false);
-    if (waiting_.empty() || outstanding_.size() >= settings_.window) return std::nullopt;
+    if (sequenced == nullptr) return std::nullopt;
+    if (waiting_.empty() || sequenced != &waiting_.front()) return radiate(*sequenced, false);
     Item& item = outstanding_.emplace_back(std::move(waiting_.front()));
     waiting_.pop_front();
     item.sequence = next_sequence_++;
     return radiate(item, false);
+}
+
+Fop::Item* Fop::next_sequenced() {
+    if (state_ != State::active && state_ != State::retransmitting) return nullptr;
+    const auto due = std::ranges::find_if(outstanding_, &Item::due);
+    if (due != outstanding_.end()) return &*due;
+    return waiting_.empty() || outstanding_.size() >= settings_.window ? nullptr : &waiting_.front();
 }
 
 std::uint8_t Fop::first_outstanding() const {

@@ -65,7 +65,8 @@ class Fop {
     /// Queues `data` (1 … 1017 octets). Fails when it does not fit a frame or too many wait.
     Result<void> send(std::uint64_t tag, std::span<const std::uint8_t> data, Service service);
 
-    /// The next frame to radiate; none when there is nothing to send or the window is full.
+    /// The next frame to radiate; none when there is nothing to send or the window is full. Of both services the one that
+    /// was sent first goes first; a sequence-controlled one that cannot go yet holds up no expedited one.
     std::optional<Outgoing> next();
 
     void on(const Clcw& clcw);
@@ -92,12 +93,15 @@ class Fop {
   private:
     struct Item {
         std::uint64_t tag = 0;
+        std::uint64_t order = 0;  ///< of sending, by either service
         std::vector<std::uint8_t> data;
         std::uint8_t sequence = 0;
         unsigned transmissions = 0;
         bool due = true;  ///< to be radiated, for the first time or again
     };
 
+    /// The sequence-controlled frame that could go now; null: none.
+    Item* next_sequenced();
     Outgoing radiate(Item& item, bool bypass);
     Outgoing control(std::vector<std::uint8_t> command) const;
     std::vector<std::uint8_t> frame_of(const TcFrameHeader& header, std::span<const std::uint8_t> data) const;
@@ -110,6 +114,7 @@ class Fop {
     std::deque<Item> expedited_, waiting_, outstanding_;
     std::deque<std::vector<std::uint8_t>> controls_;
     std::vector<Report> reports_;
+    std::uint64_t sent_ = 0;
     std::uint8_t next_sequence_ = 0;  ///< V(S)
     State state_ = State::active;
     Halt why_halted_ = Halt::none;

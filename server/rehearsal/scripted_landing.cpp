@@ -109,7 +109,8 @@ ScriptedLanding::ScriptedLanding(const simulation::Scenario& scenario, std::uint
       landing_(scenario, seed, case_number, event_reports(dictionary), clock ? *clock : clock_of(scenario, dictionary)),
       station_(landing_.light_time_s()),
       gateway_(dictionary, landing_.light_time_s(), solution_arguments(landing_.solution()), scenario.second_person,
-               stations_of(scenario), landing_.correlation().scet_of(scenario.entry_sclk), landing_.correlation()),
+               stations_of(scenario), landing_.correlation().scet_of(scenario.entry_sclk), landing_.correlation(),
+               scenario.radio.uhf_rate_bps),
       script_(script_of(scenario, dictionary)), dispersed_(landing_.dispersed()), decoder_(dictionary),
       progress_(dictionary) {}
 
@@ -149,8 +150,8 @@ telemetry::Received& ScriptedLanding::step() {
 
 void ScriptedLanding::hear(telemetry::Received& received) {
     for (auto& packet : received.packets) receive(packet);
-    // Once a second suffices for windows of many seconds.
-    if (cycles_ % 64 == 0) gateway_.pass(landing_.ert_now(), stages_);
+    // Once a second suffices for windows of many seconds; what waits at the uplink leaves as soon as it may.
+    if (cycles_ % 64 == 0 || gateway_.at_uplink() > 0) gateway_.pass(landing_.ert_now(), stages_);
 }
 
 const telemetry::DecodedPacket& ScriptedLanding::decoded(telemetry::ReceivedPacket& packet) const {

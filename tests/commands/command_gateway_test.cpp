@@ -403,6 +403,29 @@ TEST_CASE(
     CHECK(cycles <= static_cast<int>(CommandGateway::at_uplink_max));
 }
 
+TEST_CASE(
+    "commands that may wait leave no faster than their answers come down, and one that passes ahead leaves at once",
+    "[gateway][bounds][R63]") {
+    Station station;
+    auto flood = request("NO_OP");
+    flood.controller = "greedy";
+    std::size_t left = 0;
+    Ert at = now;
+    for (int cycle = 0; cycle < 64 * 60; ++cycle, at.microseconds += 15'625) {
+        if (cycle < 1000) REQUIRE(station.gateway.submit(flood, at, station.stages).accepted);
+        station.gateway.pass(at, station.stages);
+        left += station.gateway.take_uplinks().size();
+    }
+    const double carried = 60.0 * 1000.0 * ReleasePace::downlink_share / ReleasePace::answer_octets;
+    CHECK(static_cast<double>(left) <= ReleasePace::at_once + carried + 1.0);
+    CHECK(static_cast<double>(left) >= carried);
+    auto wanted = request("NO_OP");
+    wanted.controller = "director";
+    wanted.director = true;
+    for (int i = 0; i < 2; ++i) REQUIRE(station.gateway.submit(wanted, at, station.stages).accepted);
+    CHECK(station.gateway.take_uplinks().size() == CommandGateway::radiated_a_cycle_max);
+}
+
 TEST_CASE("silence becomes unknown when the window has passed, never ok", "[gateway][R44]") {
     Station station;
     REQUIRE(station.send(request("NO_OP")).accepted);

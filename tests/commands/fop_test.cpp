@@ -209,6 +209,16 @@ TEST_CASE("wait holds what is in sequence, not what is expedited; reports of oth
     CHECK(fop.next()->tag == 1U);
 }
 
+TEST_CASE("of both services what was sent first leaves first, so that neither starves the other", "[commands][R63]") {
+    Fop fop{settings(5)};
+    REQUIRE(fop.send(1, data_of(1), Service::expedited));
+    REQUIRE(fop.send(2, data_of(2), Service::sequence_controlled));
+    for (std::uint64_t tag = 3; tag < 6; ++tag) REQUIRE(fop.send(tag, data_of(tag), Service::expedited));
+    std::vector<std::uint64_t> left;
+    while (const auto frame = fop.next()) left.push_back(frame->tag.value());
+    CHECK(left == std::vector<std::uint64_t>{1, 2, 3, 4, 5});
+}
+
 TEST_CASE("what does not fit a frame, or is one too many, is refused in words", "[commands]") {
     Fop fop{settings(5)};
     CHECK_FALSE(fop.send(1, {}, Service::expedited));

@@ -69,6 +69,40 @@ TEST_CASE("the scenarios in which a computer fails end on the ground", "[.long][
     }
 }
 
+TEST_CASE("\"do edl\" among another's 1400 commands is executed, each of its stages is known, and so are theirs",
+          "[release][rehearsal][bounds][R63]") {
+    const double uhf_rate_bps = GENERATE(8000.0, 4000.0);
+    auto scenario = test::shipped_scenario("nominal_auto");
+    scenario.radio.uhf_rate_bps = uhf_rate_bps;
+    Rehearsal rehearsal{scenario, 1, 0, tests::shipped_dictionary()};
+    using Stages = std::map<commands::Stage, commands::Status>;
+    std::map<std::string, std::map<std::uint64_t, Stages>> fates;
+    v1::CommandRequest flood;
+    flood.set_command("NO_OP");
+    flood.set_service("BD");  // so that nothing waits for a report of the vehicle
+    int asked = 0;
+    while (rehearsal.clocks().e_s() < -1170.0 + 60.0) {
+        rehearsal.step();
+        for (int now = 0; rehearsal.clocks().e_s() > -1172.0 && now < 8 && asked < 1400; ++now, ++asked)
+            REQUIRE(rehearsal.submit(flood, "greedy").accepted());
+        for (const auto& stage : rehearsal.take_stages()) fates[stage.name][stage.command][stage.stage] = stage.status;
+    }
+    REQUIRE(fates["EDL_DO_EDL"].size() == 1);
+    for (const auto& [stage, status] : fates["EDL_DO_EDL"].begin()->second) {
+        INFO(commands::name_of(stage) << ", " << commands::name_of(status) << ", at " << uhf_rate_bps << " b/s");
+        CHECK(status == commands::Status::ok);
+    }
+    CHECK(fates["EDL_DO_EDL"].begin()->second.contains(commands::Stage::executed));
+    std::size_t executed = 0;
+    for (const auto& [number, stages] : fates["NO_OP"]) {
+        if (!stages.contains(commands::Stage::radiated) || stages.at(commands::Stage::radiated) != commands::Status::ok)
+            continue;
+        executed += stages.contains(commands::Stage::executed) ? 1 : 0;
+        for (const auto& [stage, status] : stages) CHECK(status != commands::Status::unknown);
+    }
+    CHECK(executed >= 50);
+}
+
 TEST_CASE("over three orbiters a packet keeps one identity, and the recording comes down in passes",
           "[rehearsal][relay][R29][R41]") {
     auto scenario = test::shipped_scenario("relay_passes");

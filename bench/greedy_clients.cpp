@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/greedy_clients.hpp"
+
+#include "bench/loopback_request.hpp"
+#include "bench/must.hpp"
+
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+#include <vector>
+
+namespace aeolis::bench {
+namespace {
+
+constexpr std::size_t command_threads = 8;  ///< each waits for its answers
+
+}  // namespace
+
+GreedyClients::GreedyClients() {
+    void* const shared =
+        ::mmap(nullptr, sizeof(SharedCounters), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    must(shared != MAP_FAILED, "mmap");
+    counters_ = new (shared) SharedCounters;
+    process_ = ::fork();
+    must(process_ >= 0, "fork");
+    if (process_ != 0) return;
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    while (counters_->port == 0) std::this_thread::sleep_for(std::chrono::milliseconds{1});
+    std::vector<std::thread> threads;
+    for (std::size_t i = 0; i < questions_at_once; ++i) threads.emplace_back([this] { ask(*counters_); });
+    for (std::size_t i = 0; i < command_threads; ++i) threads.emplace_back([this] { command(*counters_); });
+    for (auto& thread : threads) thread.join();  // until it is killed
+}
+
+GreedyClients::~GreedyClients() {
+    ::kill(process_, SIGKILL);
+    ::waitpid(process_, nullptr, 0);
+    ::munmap(counters_, sizeof(SharedCounters));
+}
+
+void GreedyClients::begin(std::uint16_t port, const Targets& targets) {
+    const auto put = [](Text& to, const std::string& from) {
+        must(from.size() < to.size(), "a short text");
+        std::memcpy(to.data(), from.c_str(), from.size() + 1);
+    };
+    put(counters_->question, targets.question);
+    put(counters_->asker, targets.asker);
+    put(counters_->target, targets.commands);
+    put(counters_->commander, targets.commander);
+    counters_->port = port;
+}
+
+void GreedyClients::ask(SharedCounters& counters) {
+    const auto request = request_text("GET", counters.question.data(), counters.asker.data());
+    while (true) {
+        if (answer_of(counters.port, request).status == 200) {
+            ++counters.answers;
+            continue;
+        }
+        ++counters.refused;
+        std::this_thread::sleep_for(std::chrono::milliseconds{20});
+    }
+}
+
+void GreedyClients::command(SharedCounters& counters) {
+    const auto request =
+        request_text("POST", counters.target.data(), counters.commander.data(), R"({"command":"NO_OP"})");
+    constexpr std::chrono::microseconds pause{1'000'000 * command_threads / commands_per_s};
+    for (auto next = std::chrono::steady_clock::now(); true; next += pause) {
+        std::this_thread::sleep_until(next);
+        if (answer_of(counters.port, request).status == 429) ++counters.limited;
+        ++counters.commands;
+    }
+}
+
+}  // namespace aeolis::bench
