@@ -378,6 +378,15 @@ void under_load(Channels channels, Beside beside) {
             {}, server::JobPriority::soon);
         if (!taken) web->post([done] { done(Error{server::QueryThreads::busy}); });
     };
+    services.read_run = [&](std::uint64_t run, const auto& done) {
+        const bool taken = queries->ask(
+            [&web, run, done](archive::Reader& reader) {
+                auto of_archive = reader.run(archive::RunId{static_cast<std::uint32_t>(run)});
+                web->post([done, of_archive = std::move(of_archive)]() mutable { done(std::move(of_archive)); });
+            },
+            {}, server::JobPriority::soon);
+        if (!taken) web->post([done] { done(Error{server::QueryThreads::busy}); });
+    };
     server::StreamHub hub{dictionary.id, services};
     std::optional<ApiServer> api;
     server::WebServer::Handlers handlers;

@@ -20,6 +20,12 @@ bool brings_packets(std::string_view link) {
     return link.starts_with("uhf") || is_live_telemetry(link);
 }
 
+/// `every`: so many packets are made for one that is due.
+std::optional<double> stale_after_s(const dictionary::Packet& packet, std::uint32_t every) {
+    if (!packet.expected_rate_hz || *packet.expected_rate_hz <= 0.0) return {};
+    return std::max(stale_intervals * every / *packet.expected_rate_hz, stale_least_s);
+}
+
 }  // namespace
 
 StalenessMonitor::StalenessMonitor(const dictionary::Dictionary& dictionary)
@@ -156,12 +162,14 @@ void StalenessMonitor::judge(Row& row, Ert now, std::vector<StalenessChange>& ou
 }
 
 std::optional<double> stale_after_s(const dictionary::Dictionary& dictionary, std::size_t packet) {
-    const auto& of = dictionary.packets[packet];
-    if (!of.expected_rate_hz || *of.expected_rate_hz <= 0.0) return {};
     std::uint32_t every = 1;
     for (const auto& row : dictionary.telemetry_plan)
-        if (row.packet == of.name) every = std::max(every, std::ranges::max(row.every));
-    return std::max(stale_intervals * every / *of.expected_rate_hz, stale_least_s);
+        if (row.packet == dictionary.packets[packet].name) every = std::max(every, std::ranges::max(row.every));
+    return stale_after_s(dictionary.packets[packet], every);
+}
+
+std::optional<double> stale_in_recording_after_s(const dictionary::Dictionary& dictionary, std::size_t packet) {
+    return stale_after_s(dictionary.packets[packet], 1);
 }
 
 bool names_lost_link(std::string_view reason, std::string_view link_reason) {

@@ -122,9 +122,11 @@ class StalenessMonitor {
     std::optional<std::size_t> state_;  ///< of the vehicle; none: not known
 };
 
-/// How long a recording, too, may bring nothing of a packet before its last values are no longer of now: four of the
-/// slowest interval that the plan promises, `stale_least_s` at least. None: no rate is known.
+/// How long nothing of a packet may come by any way before its last values are no longer of now: four of the slowest
+/// interval that the plan promises live, `stale_least_s` at least. None: no rate is known.
 std::optional<double> stale_after_s(const dictionary::Dictionary& dictionary, std::size_t packet);
+/// The same of a recording, which holds each packet that the vehicle makes, not thinned for the link.
+std::optional<double> stale_in_recording_after_s(const dictionary::Dictionary& dictionary, std::size_t packet);
 
 /// Whether the reason of a missing packet names a lost link with these words of its own.
 bool names_lost_link(std::string_view reason, std::string_view link_reason);

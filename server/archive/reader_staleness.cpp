@@ -57,7 +57,7 @@ Result<v1::RecordedStaleness> Reader::recorded_staleness(RunId run) {
             stretches.reset();
             of = packet;
             const auto index = static_cast<std::size_t>(packet);
-            if (const auto after_s = telemetry::stale_after_s(state_->dictionary, index)) {
+            if (const auto after_s = telemetry::stale_in_recording_after_s(state_->dictionary, index)) {
                 auto& added = *report.add_packets();
                 added.set_packet(state_->dictionary.packets[index].name);
                 added.set_stale_after_s(*after_s);
