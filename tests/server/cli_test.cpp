@@ -799,7 +799,7 @@ TEST_CASE("the program writes the command file that changes parameters, with the
     }
 }
 
-TEST_CASE("the explanations in docs are those that the program prints", "[.long][cli][explanation][R38]") {
+TEST_CASE("the explanations in docs are those that the program prints", "[release][cli][explanation][R38]") {
     if (program().empty()) return;
     const aeolis::test::TemporaryFolder folder;
     const std::string archive = "'" + (folder / "landing.db").string() + "'";
