@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "aeolis/v1/prediction.pb.h"
-#include "common/names.hpp"
 #include "server/api/api.hpp"
+#include "server/api/channel_names.hpp"
 #include "server/api/query_text.hpp"
 #include "server/api/run_questions.hpp"
 #include "server/archive/items.hpp"
@@ -30,11 +30,9 @@ Result<Channels> channels_of(const QueryText& query, const dictionary::Dictionar
         return Error{fmt::format("channels: {} of them, at most {} at once", names.size(), predicted_channels_max)};
     Channels channels;
     for (const auto& name : names) {
-        const auto* channel = dictionary.channel(name);
-        if (channel == nullptr)
-            return Error{fmt::format("channels: there is no '{}'; the nearest name is '{}'", name,
-                                     nearest(name, dictionary.channels, &dictionary::Channel::name))};
-        if (std::ranges::find(channels, channel) == channels.end()) channels.push_back(channel);
+        const auto channel = channel_named(dictionary, "channels", name);
+        if (!channel) return channel.error();
+        if (std::ranges::find(channels, *channel) == channels.end()) channels.push_back(*channel);
     }
     return channels;
 }

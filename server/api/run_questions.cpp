@@ -3,6 +3,7 @@
 
 #include "commands/preconditions.hpp"
 #include "commands/timeline_change.hpp"
+#include "server/api/channel_names.hpp"
 #include "server/api/limits_in_force.hpp"
 #include "server/api/list_response.hpp"
 #include "server/api/plan_state.hpp"
@@ -89,9 +90,9 @@ HttpResponse items(const AnswerContext& context, archive::Reader& reader, archiv
     const auto names = query.list("names");
     selection.all_channels = names.empty();
     for (const auto& name : names) {
-        const auto* channel = context.dictionary.channel(name);
-        if (channel == nullptr) return error_response(400, fmt::format("names: there is no channel '{}'", name));
-        selection.channels.push_back(channel->id.value);
+        const auto channel = channel_named(context.dictionary, "names", name);
+        if (!channel) return error_response(400, channel.error());
+        selection.channels.push_back((*channel)->id.value);
     }
     std::ranges::sort(selection.channels);
     const auto page = ListPage::of(query, {item_page_max, item_page_max});

@@ -119,6 +119,11 @@ class StreamHub {
             read_items;
         std::function<void(std::uint64_t run, std::function<void(Result<v1::RunState>)>)> read_run;
         std::function<void(bool wanted)> want_items;
+        /// The id of a channel by its name or alias. The Error names the one that is none.
+        std::function<Result<std::uint32_t>(const std::string& name)> channel_id =
+            [](const std::string& name) -> Result<std::uint32_t> {
+            return Error{"channel_names: there is no channel '" + name + "'"};
+        };
         /// The clock for replays at a pace.
         std::function<std::chrono::steady_clock::time_point()> now = std::chrono::steady_clock::now;
         RateBy rate_by = RateBy::vehicle;

@@ -11,8 +11,28 @@
 namespace aeolis::server {
 namespace {
 
+/// Chosen: of one subscription; each is found by going through the dictionary. all_channels names them all.
+constexpr int channel_names_max = 4'096;
+
 bool is_over(const v1::RunState& run) {
     return run.state() == v1::RunState::finished || run.state() == v1::RunState::interrupted;
+}
+
+/// The ids of a subscription's channels, ascending, each once.
+Result<std::vector<std::uint32_t>> channels_of(const v1::Subscribe& subscribe, const StreamHub::Services& services) {
+    if (subscribe.channel_names_size() > channel_names_max)
+        return Error{fmt::format("channel_names: {} of them, at most {}; all_channels takes all",
+                                 subscribe.channel_names_size(), channel_names_max)};
+    std::vector<std::uint32_t> ids{subscribe.channels().begin(), subscribe.channels().end()};
+    for (const auto& name : subscribe.channel_names()) {
+        const auto id = services.channel_id(name);
+        if (!id) return id.error();
+        ids.push_back(*id);
+    }
+    std::ranges::sort(ids);
+    const auto [repeats, end] = std::ranges::unique(ids);
+    ids.erase(repeats, end);
+    return ids;
 }
 
 }  // namespace
@@ -106,13 +126,14 @@ void StreamSession::subscribe(const v1::Subscribe& subscribe) {
     if (subscribe.run() > UINT32_MAX) return refuse(fmt::format("run {}: there is none", subscribe.run()));
     const std::uint64_t run = subscribe.run() == 0 ? hub_.current_run() : subscribe.run();
     if (auto refusal = refusal_of_pace(subscribe.pace(), run); !refusal.empty()) return refuse(std::move(refusal));
+    auto channels = channels_of(subscribe, hub_.services());
+    if (!channels) return refuse(channels.error().message);
     ++subscription_;
     retry_ = next_question_ = nullptr;
     waiting_for_run_ = stall_told_ = false;
     due_.reset();
     selection_.all_channels = subscribe.all_channels();
-    selection_.channels.assign(subscribe.channels().begin(), subscribe.channels().end());
-    std::ranges::sort(selection_.channels);
+    selection_.channels = std::move(*channels);
     selection_.max_rate_hz = subscribe.max_rate_hz();
     selection_.packets = !subscribe.without_units();
     pace_ = subscribe.pace();

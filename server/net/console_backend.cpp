@@ -2,6 +2,7 @@
 #include "server/net/console_backend.hpp"
 
 #include "server/access/this_user.hpp"
+#include "server/api/channel_names.hpp"
 #include "server/archive/upkeep.hpp"
 #include "server/base/json.hpp"
 #include "server/base/log_line.hpp"
@@ -316,6 +317,11 @@ StreamHub::Services ConsoleBackend::stream_services() {
     services.want_items = [this](bool wanted) {
         items_wanted_ = wanted;
         if (pipeline_) pipeline_->want_items(wanted);
+    };
+    services.channel_id = [this](const std::string& name) -> Result<std::uint32_t> {
+        const auto channel = channel_named(dictionary_, "channel_names", name);
+        if (!channel) return channel.error();
+        return (*channel)->id.value;
     };
     return services;
 }

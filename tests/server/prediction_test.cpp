@@ -127,7 +127,7 @@ TEST_CASE("runs that differ in seed and faults have one prediction, to the octet
             return reply.body;
         };
         CHECK_THAT(refused("?channels=altitud_m"),
-                   Catch::Contains("there is no 'altitud_m'; the nearest name is 'altitude_m'"));
+                   Catch::Contains("there is no channel 'altitud_m'; the nearest name is 'altitude_m'"));
         CHECK_THAT(refused("?from=2&to=1"), Catch::Contains("upside down"));
         CHECK_THAT(refused("?names=altitude_m"), Catch::Contains("names"));
         CHECK_THAT(refused("?format=csv"), Catch::Contains("none of json, protobuf"));

@@ -86,6 +86,11 @@ struct Venue {
         };
         services.now = [this] { return now; };
         services.want_items = [](bool) {};
+        services.channel_id = [](const std::string& name) -> Result<std::uint32_t> {
+            if (name == "altitude_m" || name == "GNC-0001") return altitude;
+            if (name == "speed_mps") return speed;
+            return Error{"channel_names: there is no channel '" + name + "'"};
+        };
         return services;
     }
     static constexpr std::uint64_t flown_before = 9;
@@ -464,6 +469,55 @@ TEST_CASE("only the channels of the subscription are sent", "[stream]") {
     batch.clear_items();
     select_items({StreamFormat::json, false, {99}, 0.0}, 0.0, items, batch);
     CHECK(batch.items_size() == 0);
+}
+
+TEST_CASE("a subscription names channels by name or alias, by id, or both, and those named twice count once",
+          "[stream][R62]") {
+    const std::vector<std::uint32_t> only_altitude{altitude}, both{altitude, speed};
+    struct Wish {
+        std::vector<std::string> names;
+        std::vector<std::uint32_t> ids;
+        const std::vector<std::uint32_t>& gets;
+    };
+    for (const auto format : {StreamFormat::protobuf, StreamFormat::json})
+        for (const auto& wish :
+             {Wish{{"altitude_m"}, {}, only_altitude}, Wish{{"speed_mps", "altitude_m"}, {}, both},
+              Wish{{"speed_mps"}, {altitude}, both}, Wish{{"GNC-0001", "altitude_m"}, {altitude}, only_altitude}}) {
+            Venue venue;
+            Client client{venue.hub, format};
+            v1::ClientMessage message;
+            for (const auto& name : wish.names) message.mutable_subscribe()->add_channel_names(name);
+            for (const auto id : wish.ids) message.mutable_subscribe()->add_channels(id);
+            client.send(message);
+            venue.publish({samples_item(1, 5.0)});
+            client.read_all();
+            INFO(wish.names.front() << " and " << wish.ids.size() << " ids");
+            CHECK(client.refusals.empty());
+            REQUIRE(client.saw_exactly(1, 1));
+            const auto& ids = client.messages.back().batch().items(0).samples().ids();
+            CHECK(std::vector<std::uint32_t>(ids.begin(), ids.end()) == wish.gets);
+        }
+}
+
+TEST_CASE("a subscription with a name that is no channel is refused by that name, and the one before stands",
+          "[stream][bounds][R62]") {
+    Venue venue;
+    Client client{venue.hub};
+    v1::ClientMessage message;
+    message.mutable_subscribe()->add_channel_names("altitude_m");
+    client.send(message);
+    message.mutable_subscribe()->add_channel_names("moon_phase");
+    client.send(message);
+    message.mutable_subscribe()->clear_channel_names();
+    for (int i = 0; i < 4'097; ++i) message.mutable_subscribe()->add_channel_names("altitude_m");
+    client.send(message);
+    venue.publish({samples_item(1, 5.0)});
+    client.read_all();
+    REQUIRE(client.refusals.size() == 2);
+    CHECK(client.refusals[0] == "channel_names: there is no channel 'moon_phase'");
+    CHECK_THAT(client.refusals[1], Catch::Contains("channel_names: 4097 of them, at most 4096"));
+    REQUIRE(client.saw_exactly(1, 1));
+    CHECK(client.messages.back().batch().items(0).samples().ids_size() == 1);
 }
 
 TEST_CASE("packets that share their header's channels have a rate each; another mission's rate counts by reception, "

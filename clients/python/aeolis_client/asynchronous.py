@@ -290,7 +290,7 @@ class AsyncClient:
         When the connection is lost it is opened again, and the stream goes on behind the last item. Ends with the run.
         No item is left out, but for samples above `max_rate_hz` where one is given: `items` has those.
         @param run       0: the current run
-        @param channels  names; None: all
+        @param channels  names or aliases; None: all
         @param more      fields of Subscribe: max_rate_hz, without_units, pace
         Errors: AeolisError when the server refuses, or is not reached again in five tries
         """
@@ -298,8 +298,7 @@ class AsyncClient:
         if channels is None:
             wanted["all_channels"] = True
         else:
-            ids = {channel.name: channel.id for channel in (await self.dictionary()).channels}
-            wanted["channels"] = [_known(ids, name) for name in channels]
+            wanted["channel_names"] = list(channels)
         state = self.schema.RunState()  # as the stream told last
         lost = 0
         while True:
@@ -397,12 +396,6 @@ def _given(query: dict[str, Any]) -> dict[str, Any]:
 
 def _written(value: Any) -> Any:
     return value.isoformat() if isinstance(value, datetime) else value
-
-
-def _known(ids: dict[str, int], name: str) -> int:
-    if name not in ids:
-        raise AeolisError(0, f"there is no channel '{name}'")
-    return ids[name]
 
 
 def _problem(answer: httpx.Response) -> AeolisError:

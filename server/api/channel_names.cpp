@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/api/channel_names.hpp"
+
+#include "common/names.hpp"
+
+#include <fmt/format.h>
+
+namespace aeolis::server {
+
+Result<const dictionary::Channel*> channel_named(const dictionary::Dictionary& dictionary, std::string_view field,
+                                                 const std::string& name) {
+    if (const auto* channel = dictionary.channel(name)) return channel;
+    return Error{fmt::format("{}: there is no channel '{}'; the nearest name is '{}'", field, name,
+                             nearest(name, dictionary.channels, &dictionary::Channel::name))};
+}
+
+}  // namespace aeolis::server
