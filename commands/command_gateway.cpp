@@ -4,6 +4,7 @@
 #include "commands/authorise.hpp"
 #include "commands/preconditions.hpp"
 #include "commands/read_back.hpp"
+#include "commands/request_form.hpp"
 #include "commands/shares.hpp"
 #include "commands/timeline_change.hpp"
 
@@ -20,21 +21,10 @@ constexpr const char* parameters_received =
 
 constexpr std::string_view begin_command = "EDL_DO_EDL";  // before its first timepoint stands its acceptance. R16
 
-/// The service of that name; an empty name leaves the choice to the link.
-Result<std::optional<Fop::Service>> service_named(const std::string& name) {
-    using Service = Fop::Service;
-    if (name.empty()) return std::optional<Service>{};
-    if (name == "AD") return std::optional{Service::sequence_controlled};
-    if (name == "BD") return std::optional{Service::expedited};
-    return Error{fmt::format("unknown service '{}': AD, BD, or none for what suits", name)};
-}
-
 /// Whether the change means that the command has no effect. A failed verification does not undo it.
 bool undoes(const StageChange& change) {
     return change.status == Status::failed && change.stage != Stage::verified;
 }
-
-constexpr std::size_t controller_name_max = 64;  // chosen
 
 /// A controller's name as typed, without surrounding blanks and in small letters.
 std::string same_person(std::string_view name) {
@@ -78,10 +68,9 @@ Result<void> CommandGateway::takes(std::size_t more, const std::string& asker) c
 }
 
 Result<CommandGateway::Prepared> CommandGateway::prepare(const Request& request, Ert now) const {
-    const auto* command = dictionary_.command(request.command);
-    if (command == nullptr)
-        return Error{fmt::format("unknown command '{}': the dictionary of {} has none of this name", request.command,
-                                 dictionary_.mission)};
+    const auto named = command_named(dictionary_, request.command);
+    if (!named) return named.error();
+    const auto* command = *named;
     if (auto room = takes(1, asker_of(request.browser, request.controller)); !room) return room.error();
 
     std::vector<NamedValue> arguments = request.arguments;
@@ -161,8 +150,7 @@ Reply CommandGateway::submit(const Request& request, Ert now, std::vector<StageR
 }
 
 Result<bool> CommandGateway::needs_approval(const Request& request) const {
-    if (request.controller.size() > controller_name_max)
-        return Error{fmt::format("controller: a name of at most {} octets is wanted", controller_name_max)};
+    if (const auto controller = check_controller(request.controller); !controller) return controller.error();
     if (std::ranges::find(second_person_, request.command) == second_person_.end()) return false;
     if (same_person(request.controller).empty())
         return Error{request.command +
@@ -323,7 +311,6 @@ std::string CommandGateway::perform(const Request& asked, const Underway* comman
     }
     if (action == "release") return waits(queue_.release(number));
     if (action == "cancel") return waits(queue_.cancel(number));
-    if (action != "approve") return fmt::format("unknown action '{}': release, hold, cancel or approve", action);
     if (command == nullptr || (entry == nullptr && stations_.over(now))) return waits(false);
     if (const auto refusal = not_another_person(asked, *command); !refusal.empty()) return refusal;
     return queue_.approve(number) ? std::string{} : fmt::format("command {} waits for no approval", number);
@@ -331,7 +318,7 @@ std::string CommandGateway::perform(const Request& asked, const Underway* comman
 
 std::string CommandGateway::not_another_person(const Request& asked, const Underway& command) {
     const std::string person = same_person(asked.controller);
-    if (person.empty() || asked.controller.size() > controller_name_max) return "controller: say who approves it";
+    if (person.empty()) return "controller: say who approves it";
     if (person == same_person(command.controller))
         return fmt::format("command {} was asked for by {}: another controller must approve it", command.number,
                            command.controller);
@@ -348,8 +335,8 @@ Reply CommandGateway::act(const Request& request, Ert now, std::vector<StageRepo
     reply.dry_run = request.dry_run;
     const std::string& action = request.action;
     auto* command = underway(request.number);
-    const std::string refusal = request.dry_run ? "dry_run: what is done about a waiting command cannot be tried out"
-                                                : perform(request, command, now);
+    const auto formed = check_action(request);
+    const std::string refusal = formed ? perform(request, command, now) : formed.error().message;
     const std::string by = request.controller.empty() ? "a controller" : request.controller;
     if (!refusal.empty()) {
         reply.reason = refusal;

@@ -162,7 +162,7 @@ class CommandGateway {
     void go_on(Underway& underway, Ert now, std::vector<StageReport>& stages);
     /// Why an action on a waiting command is impossible: the command does not wait.
     std::string does_not_wait(std::uint64_t number, Ert now) const;
-    /// Performs the action. Returns why it could not, or an empty string.
+    /// Performs an action that check_action() has passed. Returns why it could not, or an empty string.
     std::string perform(const Request& asked, const Underway* command, Ert now);
     /// The command's entry in the queue; null: it does not wait.
     const CommandQueue::Entry* waiting(std::uint64_t number) const;

@@ -63,8 +63,15 @@ Error no_accounts() {
 Error no_user(const std::string& user) {
     return Error{fmt::format("there is no user '{}'", user)};
 }
-Error no_role(const std::string& role) {
+
+Result<void> check_role(const std::string& role) {
+    if (role_of(role)) return {};
     return Error{fmt::format("role: '{}' is none of observer, controller, director, instructor, administrator", role)};
+}
+
+Result<void> check_name_of(const char* field, const std::string& name) {
+    const auto named = check_name(name);
+    return named ? named : Error{fmt::format("{}: {}", field, named.error().message)};
 }
 
 }  // namespace
@@ -313,11 +320,34 @@ v1::UserList Access::users() {
     return list;
 }
 
+Result<void> Access::check_form(const v1::NewUser& user) {
+    if (auto named = check_name_of("user", user.user()); !named) return named;
+    if (auto role = check_role(user.role()); !role) return role;
+    return check_password(user.password());
+}
+
+Result<void> Access::check_form(const v1::UserChange& change) {
+    if (!change.role().empty())
+        if (auto role = check_role(change.role()); !role) return role;
+    if (change.all_commands() && !change.commands().empty())
+        return Error{"commands and all_commands: one of them, not both"};
+    if (!change.password().empty()) return check_password(change.password());
+    if (change.role().empty() && change.commands().empty() && !change.all_commands())
+        return Error{"the change says nothing: role, password, commands or all_commands is wanted"};
+    return {};
+}
+
+Result<void> Access::check_form(const v1::NewToken& token) {
+    if (auto named = check_name_of("name", token.name()); !named) return named;
+    if (auto role = check_role(token.role()); !role) return role;
+    if (token.days() > token_days_max)
+        return Error{fmt::format("days: {} is more than {}", token.days(), token_days_max)};
+    return {};
+}
+
 Result<v1::User> Access::add_user(const v1::NewUser& user) {
     if (!accounts()) return no_accounts();
-    if (auto named = check_name(user.user()); !named) return Error{"user: " + named.error().message};
-    if (!role_of(user.role())) return no_role(user.role());
-    if (auto good = check_password(user.password()); !good) return good.error();
+    if (auto formed = check_form(user); !formed) return formed.error();
     v1::Account account;
     account.set_user(user.user());
     account.set_role(user.role());
@@ -339,17 +369,12 @@ Result<v1::User> Access::change_user(const Operator& who, const std::string& use
     const bool own = user == who.user;
     if (!own && !may(who, Right::administer))
         return Error{fmt::format("only an administrator changes user '{}'", user)};
+    if (auto formed = check_form(change); !formed) return formed.error();
     if (own && !change.role().empty()) return Error{"role: nobody changes their own; another administrator does"};
-    if (!change.role().empty() && !role_of(change.role())) return no_role(change.role());
     const bool other_commands = change.all_commands() || !change.commands().empty();
     if (own && other_commands) return Error{"commands: nobody changes their own; another administrator does"};
-    if (change.all_commands() && !change.commands().empty())
-        return Error{"commands and all_commands: one of them, not both"};
-    if (change.role().empty() && change.password().empty() && !other_commands)
-        return Error{"the change says nothing: role, password, commands or all_commands is wanted"};
     std::string hash, hash_before;
     if (!change.password().empty()) {
-        if (auto good = check_password(change.password()); !good) return good.error();
         if (own && change.password() == change.current_password())
             return Error{"password: it is the one of before, choose another"};
         if (own) {
@@ -409,10 +434,8 @@ v1::TokenList Access::tokens() {
 
 Result<v1::Token> Access::add_token(const v1::NewToken& asked) {
     if (!accounts()) return no_accounts();
-    if (auto named = check_name(asked.name()); !named) return Error{"name: " + named.error().message};
+    if (auto formed = check_form(asked); !formed) return formed.error();
     const auto role = role_of(asked.role());
-    if (!role) return no_role(asked.role());
-    if (asked.days() > token_days_max) return Error{fmt::format("days: {} at most", token_days_max)};
     const auto secret = new_secret();
     const auto now = settings_.now();
     v1::AccessToken token;

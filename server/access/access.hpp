@@ -88,6 +88,11 @@ class Access {
     void log_out(const Operator& who);
 
     v1::UserList users();
+    /// Checks what a wish says by itself, whoever has an account: words, names and lengths. The Error names the field
+    /// and what is allowed. add_user(), change_user() and add_token() check it, too.
+    static Result<void> check_form(const v1::NewUser& user);
+    static Result<void> check_form(const v1::UserChange& change);
+    static Result<void> check_form(const v1::NewToken& token);
     /// Adds a user. Slow, as is change_user().
     Result<v1::User> add_user(const v1::NewUser& user);
     /// Changes one's own password or, as an administrator, any field of another user. Ends that user's other sessions.

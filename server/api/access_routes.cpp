@@ -35,9 +35,10 @@ void set_cookie(HttpResponse& response, const std::string& name, const std::stri
                                                            name, value, length.count(), secure ? "; Secure" : ""));
 }
 
+/// What became of a wish: 422 when it was malformed, 409 when it was not possible now.
 template <typename Message>
-HttpResponse response_of(const Result<Message>& done, unsigned status) {
-    return done ? json_response(*done, status) : error_response(409, done.error());
+HttpResponse response_of(const Result<void>& formed, const Result<Message>& done, unsigned status) {
+    return done ? json_response(*done, status) : error_response(formed ? 409 : 422, done.error());
 }
 HttpResponse response_of(const Result<void>& done) {
     return done ? HttpResponse{204, "application/json", "no-store", ""} : error_response(409, done.error());
@@ -76,8 +77,7 @@ void Api::session(const ApiRequest& call) {
 
 void Api::log_in(const ApiRequest& call) {
     v1::LogIn wanted;
-    if (const auto parsed = from_json(call.request.body, wanted); !parsed)
-        return call.respond(error_response(400, parsed.error()));
+    if (auto unreadable = read_body(call.request.body, wanted)) return call.respond(std::move(*unreadable));
     answer_on_query_thread(
         call,
         [this, wanted, who = call.who](archive::Reader&) {
@@ -112,8 +112,7 @@ void Api::list_users(const ApiRequest& call) {
 
 void Api::add_user(const ApiRequest& call) {
     v1::NewUser wanted;
-    if (const auto parsed = from_json(call.request.body, wanted); !parsed)
-        return call.respond(error_response(400, parsed.error()));
+    if (auto unreadable = read_body(call.request.body, wanted)) return call.respond(std::move(*unreadable));
     if (const auto known = check_commands(parts_.dictionary, wanted.commands()); !known)
         return call.respond(error_response(422, known.error()));
     answer_on_query_thread(
@@ -122,7 +121,7 @@ void Api::add_user(const ApiRequest& call) {
             const auto done = parts_.access.add_user(wanted);
             note(who, "user", fmt::format("add '{}' as {}", wanted.user().substr(0, 64), wanted.role().substr(0, 64)),
                  outcome_of(done.ok(), done ? "" : done.error().message));
-            return response_of(done, 201);
+            return response_of(Access::check_form(wanted), done, 201);
         },
         JobPriority::soon);
 }
@@ -137,8 +136,7 @@ void Api::change_user(const ApiRequest& call) {
             return call.respond(std::move(refused));
         }
     v1::UserChange change;
-    if (const auto parsed = from_json(call.request.body, change); !parsed)
-        return call.respond(error_response(400, parsed.error()));
+    if (auto unreadable = read_body(call.request.body, change)) return call.respond(std::move(*unreadable));
     if (const auto known = check_commands(parts_.dictionary, change.commands()); !known)
         return call.respond(error_response(422, known.error()));
     answer_on_query_thread(
@@ -154,7 +152,7 @@ void Api::change_user(const ApiRequest& call) {
                                  ? ""
                                  : fmt::format(", commands {}", fmt::join(change.commands(), " "))),
                  outcome_of(done.ok(), done ? "" : done.error().message));
-            return response_of(done, 200);
+            return response_of(Access::check_form(change), done, 200);
         },
         JobPriority::soon);
 }
@@ -174,13 +172,15 @@ void Api::list_tokens(const ApiRequest& call) {
 
 void Api::add_token(const ApiRequest& call) {
     v1::NewToken wanted;
-    if (const auto parsed = from_json(call.request.body, wanted); !parsed)
-        return call.respond(error_response(400, parsed.error()));
+    if (auto unreadable = read_body(call.request.body, wanted)) return call.respond(std::move(*unreadable));
     if (const auto known = check_commands(parts_.dictionary, wanted.commands()); !known)
         return call.respond(error_response(422, known.error()));
     if (wanted.owner().empty()) wanted.set_owner(person_of(call.who));
     answer_on_query_thread(
-        call, [this, wanted](archive::Reader&) { return response_of(parts_.access.add_token(wanted), 201); },
+        call,
+        [this, wanted](archive::Reader&) {
+            return response_of(Access::check_form(wanted), parts_.access.add_token(wanted), 201);
+        },
         JobPriority::soon);
 }
 

@@ -21,13 +21,13 @@ std::function<void(Result<PipelineThread::Annotated>)> added(const Respond& resp
     };
 }
 
-/// The message in the request's body, signed: with accounts, nobody can write in another's name.
+/// Reads the message in the request's body, signed: with accounts, nobody can write in another's name. Returns the
+/// response when it cannot be read.
 template <typename Request>
-Result<Request> request_of(const ApiRequest& call) {
-    Request wanted;
-    if (const auto parsed = from_json(call.request.body, wanted); !parsed) return parsed.error();
-    if (call.who.accounts) wanted.set_by(call.who.user);
-    return wanted;
+std::optional<HttpResponse> read_signed(const ApiRequest& call, Request& wanted) {
+    auto unreadable = read_body(call.request.body, wanted);
+    if (!unreadable && call.who.accounts) wanted.set_by(call.who.user);
+    return unreadable;
 }
 
 }  // namespace
@@ -47,9 +47,9 @@ void Api::annotate(const ApiRequest& call, Annotating annotating) {
 }
 
 void Api::post_note(const ApiRequest& call) {
-    const auto wanted = request_of<v1::NoteRequest>(call);
-    if (!wanted) return call.respond(error_response(400, wanted.error()));
-    annotate(call, [wanted = *wanted](archive::Reader&, archive::RunId, Ert now) -> Annotated {
+    v1::NoteRequest wanted;
+    if (auto unreadable = read_signed(call, wanted)) return call.respond(std::move(*unreadable));
+    annotate(call, [wanted](archive::Reader&, archive::RunId, Ert now) -> Annotated {
         auto note = note_of(wanted, wanted.by(), now);
         if (!note) return error_response(422, note.error());
         return std::move(*note);
@@ -57,9 +57,9 @@ void Api::post_note(const ApiRequest& call) {
 }
 
 void Api::post_alarm(const ApiRequest& call) {
-    const auto wanted = request_of<v1::AlarmRequest>(call);
-    if (!wanted) return call.respond(error_response(400, wanted.error()));
-    annotate(call, [this, wanted = *wanted](archive::Reader& reader, archive::RunId id, Ert now) -> Annotated {
+    v1::AlarmRequest wanted;
+    if (auto unreadable = read_signed(call, wanted)) return call.respond(std::move(*unreadable));
+    annotate(call, [this, wanted](archive::Reader& reader, archive::RunId id, Ert now) -> Annotated {
         const auto links = reader.links();
         if (!links) return error_response(500, links.error());
         auto action = alarm_action_of(wanted, parts_.dictionary, *links, wanted.by(), now);

@@ -88,6 +88,12 @@ HttpResponse error_response(unsigned status, const Error& error) {
     return error_response(error.internal ? 500 : status, error.message);
 }
 
+std::optional<HttpResponse> read_body(const std::string& body, google::protobuf::Message& message) {
+    const auto fault = fault_of_json(body, message);
+    if (!fault) return std::nullopt;
+    return error_response(fault->of_value ? 422 : 400, fault->words);
+}
+
 HttpResponse busy_response() {
     return full_response(QueryThreads::busy);
 }

@@ -227,6 +227,22 @@ HttpResponse error_response(unsigned status, const Error& error);
 HttpResponse full_response(const std::string& error);  ///< a queue, empty again within a second
 HttpResponse disk_response(const std::string& error);  ///< a disk that refuses
 HttpResponse json_response(const google::protobuf::Message& message, unsigned status = 200);
+/// Makes a problem of a refused command, or command file: its reply, with the members of a problem beside its own. The
+/// reply's reason is the problem's sentence.
+template <typename Reply>
+HttpResponse refusal_response(Reply reply, unsigned status) {
+    auto response = error_response(status, reply.reason());
+    reply.set_type(std::string{about_blank});
+    reply.set_title(reason_phrase(status));
+    reply.set_status(status);
+    reply.set_detail(reply.reason());
+    reply.set_error(reply.reason());
+    response.body = json_response(reply).body;
+    return response;
+}
+/// Reads a request's body. Returns the response when it cannot: 400 when it is no such message, 422 when a value in it
+/// makes no sense.
+std::optional<HttpResponse> read_body(const std::string& body, google::protobuf::Message& message);
 
 /// The client that a request counts for: an account, without accounts a browser, else the network it comes from.
 std::string client_of(const Operator& who);

@@ -41,8 +41,7 @@ void Api::list_campaigns(const ApiRequest& call) {
 
 void Api::start_campaign(const ApiRequest& call) {
     v1::StartCampaign wanted;
-    if (const auto parsed = from_json(call.request.body, wanted); !parsed)
-        return call.respond(error_response(400, parsed.error()));
+    if (auto unreadable = read_body(call.request.body, wanted)) return call.respond(std::move(*unreadable));
     answer_on_query_thread(call, [this, wanted](archive::Reader&) {
         auto order = parts_.campaigns.order_of(wanted);
         if (!order) return error_response(422, order.error());

@@ -3,6 +3,8 @@
 #include "server/base/json.hpp"
 
 #include "commands/authorise.hpp"
+#include "server/rehearsal/client_ids.hpp"
+#include "server/rehearsal/command_messages.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -64,6 +66,30 @@ Result<void> complete(const ApiRequest& call, v1::CommandRequest& command) {
     return {};
 }
 
+/// The reply to a command that does not reach the run.
+v1::CommandReply unsent(const v1::CommandRequest& command, const std::string& reason) {
+    v1::CommandReply reply;
+    reply.set_request(command.request());
+    reply.set_dry_run(command.dry_run());
+    reply.set_reason(reason);
+    return reply;
+}
+
+/// @param malformed  what makes no sense in the file, so that nothing was sent; empty: nothing
+HttpResponse response_to_file(std::vector<v1::CommandReply> replies, const std::string& malformed) {
+    v1::SequenceReply reply;
+    reply.set_accepted(malformed.empty());
+    reply.set_reason(malformed);
+    for (auto& each : replies) {
+        if (!each.reason().empty() && (reply.reason().empty() || (!each.accepted() && reply.accepted())))
+            reply.set_reason(fmt::format("commands[{}]: {}", reply.commands_size(), each.reason()));
+        if (!each.accepted()) reply.set_accepted(false);
+        *reply.add_commands() = std::move(each);
+    }
+    if (reply.accepted()) return json_response(reply, 202);
+    return refusal_response(std::move(reply), malformed.empty() ? 409 : 422);
+}
+
 }  // namespace
 
 void name_asker(const Operator& who, v1::CommandRequest& request) {
@@ -116,31 +142,38 @@ std::optional<Api::TooMany> Api::count_commands(const Operator& who, std::size_t
 
 void Api::post_command(const ApiRequest& call) {
     v1::CommandRequest command;
-    if (const auto parsed = from_json(call.request.body, command); !parsed)
-        return call.respond(error_response(400, parsed.error()));
+    if (const auto fault = fault_of_json(call.request.body, command))
+        return call.respond(fault->of_value ? refusal_response(unsent(command, fault->words), 422)
+                                            : error_response(400, fault->words));
     const auto respond = command.dry_run() ? call.respond : audited(call, "command");
     if (const auto many = count_commands(call.who, 1)) return respond(retry_response(429, many->reason, many->wait));
     if (const auto right = complete(call, command); !right) return respond(error_response(400, right.error()));
     if (const auto allowed = may_send(call.who, parts_.dictionary, parts_.rehearsals, command); !allowed)
         return respond(error_response(403, allowed.error()));
-    const unsigned refused = parts_.dictionary.command(command.command()) == nullptr ? 422 : 409;
+    if (const auto formed = check_form(command, parts_.dictionary); !formed)
+        return respond(refusal_response(unsent(command, formed.error().message), 422));
     const auto still = may_still_send(parts_.access, call.request.credentials, parts_.dictionary, parts_.rehearsals);
     parts_.rehearsals.command(std::move(command), {still, call.who.browser, may(call.who, Right::hazardous)},
-                              [respond, refused](const v1::CommandReply& reply) {
-                                  respond(json_response(reply, reply.accepted() ? 202 : refused));
+                              [respond](v1::CommandReply reply) {
+                                  respond(reply.accepted() ? json_response(reply, 202)
+                                                           : refusal_response(std::move(reply), 409));
                               });
 }
 
 void Api::post_sequence(const ApiRequest& call) {
     v1::CommandSequence sequence;
-    if (const auto parsed = from_json(call.request.body, sequence); !parsed)
-        return call.respond(error_response(400, parsed.error()));
+    if (const auto fault = fault_of_json(call.request.body, sequence)) {
+        v1::SequenceReply reply;
+        reply.set_reason(fault->words);
+        return call.respond(fault->of_value ? refusal_response(reply, 422) : error_response(400, fault->words));
+    }
     const auto respond = sequence.dry_run() ? call.respond : audited(call, "command");
     if (sequence.commands().empty() || sequence.commands_size() > sequence_max)
         return respond(error_response(
             400, fmt::format("commands: 1 to {} are wanted, here are {}", sequence_max, sequence.commands_size())));
     if (const auto many = count_commands(call.who, static_cast<std::size_t>(sequence.commands_size())))
         return respond(retry_response(429, many->reason, many->wait));
+    std::string malformed;
     for (int i = 0; i < sequence.commands_size(); ++i) {
         auto& command = *sequence.mutable_commands(i);
         const auto at = [i](const std::string& error) { return fmt::format("commands[{}]: {}", i, error); };
@@ -151,21 +184,18 @@ void Api::post_sequence(const ApiRequest& call) {
         command.set_dry_run(sequence.dry_run());
         if (const auto allowed = may_send(call.who, parts_.dictionary, parts_.rehearsals, command); !allowed)
             return respond(error_response(403, at(allowed.error().message)));
+        if (const auto formed = check_form(command, parts_.dictionary); !formed && malformed.empty())
+            malformed = at(formed.error().message);
     }
+    std::vector<v1::CommandRequest> file{sequence.commands().begin(), sequence.commands().end()};
+    if (const auto ids = check_client_ids(file); !ids && malformed.empty()) malformed = ids.error().message;
     const auto still = may_still_send(parts_.access, call.request.credentials, parts_.dictionary, parts_.rehearsals);
-    parts_.rehearsals.sequence(
-        {sequence.commands().begin(), sequence.commands().end()}, sequence.dry_run(),
-        {still, call.who.browser, may(call.who, Right::hazardous)}, [respond](std::vector<v1::CommandReply> replies) {
-            v1::SequenceReply reply;
-            reply.set_accepted(true);
-            for (auto& each : replies) {
-                if (!each.reason().empty() && (reply.reason().empty() || (!each.accepted() && reply.accepted())))
-                    reply.set_reason(fmt::format("commands[{}]: {}", reply.commands_size(), each.reason()));
-                if (!each.accepted()) reply.set_accepted(false);
-                *reply.add_commands() = std::move(each);
-            }
-            respond(json_response(reply, reply.accepted() ? 202 : 409));
-        });
+    // A malformed file is checked all the same: its sender is told what is said of each of its commands.
+    parts_.rehearsals.sequence(std::move(file), sequence.dry_run() || !malformed.empty(),
+                               {still, call.who.browser, may(call.who, Right::hazardous)},
+                               [respond, malformed](std::vector<v1::CommandReply> replies) {
+                                   respond(response_to_file(std::move(replies), malformed));
+                               });
 }
 
 }  // namespace aeolis::server

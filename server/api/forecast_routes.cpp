@@ -27,8 +27,7 @@ HttpResponse no_forecast(archive::RunId run, std::string_view number) {
 
 void Api::post_forecast(const ApiRequest& call) {
     v1::ForecastRequest wanted;
-    if (const auto parsed = from_json(call.request.body, wanted); !parsed)
-        return call.respond(error_response(400, parsed.error()));
+    if (auto unreadable = read_body(call.request.body, wanted)) return call.respond(std::move(*unreadable));
     const bool truth = wanted.from() == v1::ForecastRequest::truth;
     if (truth)
         if (auto refusal = refusal_of(call.who, Right::instruct); refusal.status != 200)

@@ -40,11 +40,15 @@ std::string HttpResponse::field(std::string_view name) const {
     return found == fields.end() ? std::string{} : found->second;
 }
 
-HttpResponse error_response(unsigned status, const std::string& error) {
+std::string reason_phrase(unsigned status) {
     const auto phrase = std::ranges::find(phrases, status, &Phrase::status);
+    return phrase == phrases.end() ? "" : phrase->text;
+}
+
+HttpResponse error_response(unsigned status, const std::string& error) {
     v1::ErrorReply problem;
-    problem.set_type("about:blank");
-    problem.set_title(phrase == phrases.end() ? "" : phrase->text);
+    problem.set_type(std::string{about_blank});
+    problem.set_title(reason_phrase(status));
     problem.set_status(status);
     problem.set_detail(error);
     problem.set_error(error);

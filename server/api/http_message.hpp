@@ -48,6 +48,9 @@ struct HttpResponse {
     std::string field(std::string_view name) const;  ///< the value of a field; empty: absent
 };
 
+inline constexpr std::string_view about_blank = "about:blank";  ///< the type of every problem: its status says all
+/// The reason phrase of a status that this server sends; empty: of another.
+std::string reason_phrase(unsigned status);
 /// Makes a problem (RFC 9457), the form of every error: the status, its reason phrase, and a sentence that names the
 /// fault. 401 names the scheme by which one may be known [RFC 9110, 11.6.1].
 HttpResponse error_response(unsigned status, const std::string& error);

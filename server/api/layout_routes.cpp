@@ -54,8 +54,7 @@ void Api::list_layouts(const ApiRequest& call) {
 
 void Api::put_layout(const ApiRequest& call) {
     v1::Layout wanted;
-    if (const auto parsed = from_json(call.request.body, wanted); !parsed)
-        return call.respond(error_response(400, parsed.error()));
+    if (auto unreadable = read_body(call.request.body, wanted)) return call.respond(std::move(*unreadable));
     if (const auto name = archive::check_layout_name(call.parts[0]); !name)
         return call.respond(error_response(422, name.error()));
     if (!wanted.name().empty() && wanted.name() != call.parts[0])

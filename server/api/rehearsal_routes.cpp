@@ -33,20 +33,22 @@ void Api::current_rehearsal(const ApiRequest& call) {
 
 void Api::start_rehearsal(const ApiRequest& call) {
     v1::StartRehearsal start;
-    if (const auto parsed = from_json(call.request.body, start); !parsed)
-        return call.respond(error_response(400, parsed.error()));
+    if (auto unreadable = read_body(call.request.body, start)) return call.respond(std::move(*unreadable));
     if (const auto allowed = may_start(call.who, parts_.dictionary, start); !allowed)
         return call.respond(error_response(403, allowed.error()));
+    if (const auto formed = parts_.rehearsals.check_form(start); !formed)
+        return call.respond(error_response(422, formed.error()));
     parts_.rehearsals.start(start, tell_begun(call.respond, parts_.rehearsals.going_on()));
 }
 
 void Api::control_rehearsal(const ApiRequest& call) {
     v1::RehearsalControl control;
-    if (const auto parsed = from_json(call.request.body, control); !parsed)
-        return call.respond(error_response(400, parsed.error()));
+    if (auto unreadable = read_body(call.request.body, control)) return call.respond(std::move(*unreadable));
     if (const auto allowed = may_control(call.who, parts_.dictionary, control); !allowed)
         return call.respond(error_response(403, allowed.error()));
     sign(call.who, control);
+    if (const auto formed = parts_.rehearsals.check_form(control); !formed)
+        return call.respond(error_response(422, formed.error()));
     const bool going_on = parts_.rehearsals.going_on();
     const bool starts = control.action_case() == v1::RehearsalControl::kStart;
     const auto done = parts_.rehearsals.control(control, tell_begun(call.respond, going_on));

@@ -82,6 +82,14 @@ Result<Sclk> instant_of(std::string_view text, const v1::RunState& run, std::str
     return std::abs(tick - exact) < scet_text_s ? tick : exact;
 }
 
+Result<void> check_instant(std::string_view text, std::string_view name) {
+    constexpr Sclk some_entry{1.0};
+    const auto read = read_instant(text, some_entry, name);
+    if (!read) return read.error();
+    if (read->sclk && std::abs(read->sclk->seconds) > clock_s_max) return no_instant(name, text);
+    return {};
+}
+
 namespace {
 
 /// The station's time of an instant: a UTC time alone, or after "ert:", is the station's own; one of the vehicle is

@@ -27,6 +27,9 @@ RunClocks clocks_of(const v1::RunState& run);
 /// @param name  of what is read, for the Error
 Result<Sclk> instant_of(std::string_view text, const v1::RunState& run, std::string_view name);
 
+/// Whether the text is an instant as people write it, of whatever run. Its Error says how they are written.
+Result<void> check_instant(std::string_view text, std::string_view name);
+
 /// Reads the time at which something leaves the station. A UTC time alone, or after "ert:", is the station's own. A
 /// time of the vehicle (SCLK, E+4:58, "scet:" and a UTC time) is that of its arrival there: it leaves a light time
 /// earlier. Errors as instant_of().

@@ -84,14 +84,12 @@ int send(const SendOptions& options) {
                     to_json(*sequence));
     if (!answer) return failed("send: nothing was sent: " + answer.error().message);
     if (!answer->lost.empty()) return perhaps_taken(*sequence, answer->lost, options);
+    v1::ErrorReply problem;  // that has nothing of a SequenceReply
+    if (from_json(answer->body, problem))
+        return failed(fmt::format("send: refused ({}): {}", answer->status, problem.detail()));
     v1::SequenceReply reply;
-    if (const auto parsed = from_json(answer->body, reply); !parsed) {
-        v1::ErrorReply refusal;
-        if (!from_json(answer->body, refusal))
-            return perhaps_taken(*sequence, fmt::format("the answer ({}) is not one of Aeolis", answer->status),
-                                 options);
-        return failed(fmt::format("send: refused ({}): {}", answer->status, refusal.error()));
-    }
+    if (!from_json(answer->body, reply))
+        return perhaps_taken(*sequence, fmt::format("the answer ({}) is not one of Aeolis", answer->status), options);
     for (int i = 0; i < reply.commands_size() && i < sequence->commands_size(); ++i)
         fmt::print("{:>3}  {}  {}\n", i + 1, sequence->commands(i).command(), of_one(reply.commands(i)));
     const bool any =

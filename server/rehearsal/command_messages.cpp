@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/rehearsal/command_messages.hpp"
 
+#include "commands/request_form.hpp"
+#include "server/rehearsal/client_ids.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <utility>
@@ -32,6 +35,18 @@ Result<commands::Request> request_of(const v1::CommandRequest& message, const ar
     request.browser = browser;
     request.director = director;
     return request;
+}
+
+Result<void> check_form(const v1::CommandRequest& message, const dictionary::Dictionary& dictionary) {
+    if (const auto id = check_client_ids({&message, 1}); !id) return id;
+    const auto& at = message.release_at();
+    if (!at.empty())
+        if (const auto instant = archive::check_instant(at, "release_at"); !instant) return instant;
+    auto untimed = message;
+    untimed.clear_release_at();
+    const auto request = request_of(untimed, {});
+    if (!request) return request.error();
+    return commands::check_form(*request, dictionary);
 }
 
 commands::TimelineVerdict verdict_of(const v1::TimelineVerdict& message) {

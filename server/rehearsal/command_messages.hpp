@@ -5,6 +5,7 @@
 #include "aeolis/v1/run.pb.h"
 #include "commands/request.hpp"
 #include "common/result.hpp"
+#include "dictionaries/dictionary.hpp"
 #include "server/archive/records.hpp"
 #include "server/archive/run_instant.hpp"
 
@@ -18,6 +19,9 @@ namespace aeolis::server {
 /// may send hazardous commands.
 Result<commands::Request> request_of(const v1::CommandRequest& message, const archive::RunClocks& clocks,
                                      const std::string& browser = {}, bool director = false);
+/// Checks what a request says by itself, whatever the run does: see commands::check_form(). Also its `release_at` must be
+/// an instant, and its `client_id` of its form.
+Result<void> check_form(const v1::CommandRequest& message, const dictionary::Dictionary& dictionary);
 v1::CommandReply message_of(const commands::Reply& reply);
 commands::TimelineVerdict verdict_of(const v1::TimelineVerdict& message);
 v1::TimelineVerdict message_of(const commands::TimelineVerdict& verdict);

@@ -3,6 +3,7 @@
 
 #include "commands/command_gateway.hpp"
 #include "commands/shares.hpp"
+#include "server/archive/run_instant.hpp"
 #include "server/pipeline/annotations.hpp"
 #include "server/scenario/scenario_text.hpp"
 #include "server/scenario/script_check.hpp"
@@ -17,8 +18,13 @@ namespace {
 
 constexpr const char* nobody_listens = "no run goes on: nothing listens";
 
-Result<double> checked_pace(double pace) {
-    if (std::isfinite(pace) && (pace == 0.0 || (pace >= 1.0 && pace <= RehearsalRunner::pace_max))) return pace;
+/// Whether the request continues or forks a run.
+bool flies_again(const v1::StartRehearsal& request) {
+    return request.continue_run() != 0 || request.has_fork();
+}
+
+Result<void> check_pace(double pace) {
+    if (std::isfinite(pace) && (pace == 0.0 || (pace >= 1.0 && pace <= RehearsalRunner::pace_max))) return {};
     return Error{
         fmt::format("pace: {} is neither 0 (as fast as it goes) nor within 1 … {}", pace, RehearsalRunner::pace_max)};
 }
@@ -58,36 +64,65 @@ Result<void> RehearsalManager::refusal_while_going_on() const {
     return Error{what + ": stop it first, or wait until it has ended"};
 }
 
+Result<void> RehearsalManager::check_form(const v1::StartRehearsal& request) const {
+    if (const auto pace = check_pace(request.pace()); !pace) return pace;
+    const bool planned = !request.plan().empty() || !request.inline_plan().empty();
+    if (flies_again(request)) {
+        if (planned) return Error{"plan: a run that is continued or forked goes on by the plan that it has"};
+        return request.has_fork() && !request.fork().at().empty()
+                   ? archive::check_instant(request.fork().at(), "fork.at")
+                   : Result<void>{};
+    }
+    if (!request.plan().empty() && !request.inline_plan().empty())
+        return Error{"plan and inline_plan: one of them, not both"};
+    const auto scenario = scenario_of(request);
+    return scenario ? Result<void>{} : Result<void>{scenario.error()};
+}
+
+Result<void> RehearsalManager::check_form(const v1::RehearsalControl& control) const {
+    switch (control.action_case()) {
+    case v1::RehearsalControl::kStart: return check_form(control.start());
+    case v1::RehearsalControl::kPause:
+    case v1::RehearsalControl::kInject: return {};
+    case v1::RehearsalControl::kPace: return check_pace(control.pace());
+    case v1::RehearsalControl::kStop:
+        return control.stop() ? Result<void>{} : Result<void>{Error{"stop: false asks for nothing"}};
+    case v1::RehearsalControl::kNote: return check_note(control.note().text(), control.note().by());
+    case v1::RehearsalControl::kPlan:
+        if (control.plan().inject().empty()) return Error{"plan: the inject's id is wanted"};
+        return {};
+    case v1::RehearsalControl::ACTION_NOT_SET: break;
+    }
+    return Error{"the control says nothing: start, pause, pace, stop, inject, note or plan is wanted"};
+}
+
+Result<simulation::Scenario> RehearsalManager::scenario_of(const v1::StartRehearsal& request) const {
+    if (!request.has_inline_scenario()) return scenarios_.scenario(request.scenario());
+    if (!request.scenario().empty()) return Error{"scenario and inline_scenario: one of them, not both"};
+    return scenario_from_message(request.inline_scenario());
+}
+
 void RehearsalManager::start(const v1::StartRehearsal& request, Began began) {
     if (const auto busy = refusal_while_going_on(); !busy) return began(busy.error());
-    const auto pace = checked_pace(request.pace());
-    if (!pace) return began(pace.error());
-    const bool planned = !request.plan().empty() || !request.inline_plan().empty();
-    if (planned && (request.continue_run() != 0 || request.has_fork()))
-        return began(Error{"plan: a run that is continued or forked goes on by the plan that it has"});
-    if (request.continue_run() != 0 || request.has_fork())
-        return read_again_(request,
-                           [this, began = std::move(began), pace = *pace](Result<RehearsalRunner::Again> again) {
-                               post_([this, began, pace, again = std::move(again)]() mutable {
-                                   if (!again) return began(again.error());
-                                   fly_again(std::move(*again), pace, began);
-                               });
-                           });
-    if (request.has_inline_scenario() && !request.scenario().empty())
-        return began(Error{"scenario and inline_scenario: one of them, not both"});
-    auto scenario = request.has_inline_scenario() ? scenario_from_message(request.inline_scenario())
-                                                  : scenarios_.scenario(request.scenario());
+    if (const auto formed = check_form(request); !formed) return began(formed.error());
+    const double pace = request.pace();
+    if (flies_again(request))
+        return read_again_(request, [this, began = std::move(began), pace](Result<RehearsalRunner::Again> again) {
+            post_([this, began, pace, again = std::move(again)]() mutable {
+                if (!again) return began(again.error());
+                fly_again(std::move(*again), pace, began);
+            });
+        });
+    auto scenario = scenario_of(request);
     if (!scenario) return began(scenario.error());
     auto plan = plan_of(request, *scenario);
     if (!plan) return began(plan.error());
-    start({std::move(*scenario), request.seed(), *pace, std::move(*plan)}, std::move(began));
+    start({std::move(*scenario), request.seed(), pace, std::move(*plan)}, std::move(began));
 }
 
 Result<std::optional<PlannedInjects>> RehearsalManager::plan_of(const v1::StartRehearsal& request,
                                                                 const simulation::Scenario& scenario) const {
     if (request.plan().empty() && request.inline_plan().empty()) return std::optional<PlannedInjects>{};
-    if (!request.plan().empty() && !request.inline_plan().empty())
-        return Error{"plan and inline_plan: one of them, not both"};
     v1::InstructorPlan given;
     given.set_name("inline_plan");
     given.set_text(request.inline_plan());
@@ -194,31 +229,22 @@ Result<void> RehearsalManager::control(const v1::RehearsalControl& control, Bega
 Result<void> RehearsalManager::order_of_run(const v1::RehearsalControl& control) {
     if (!going_on()) return Error{"no rehearsal goes on"};
     if (control.run() != 0 && control.run() != state_.run()) return Error{not_going_on(control.run())};
+    if (auto formed = check_form(control); !formed) return formed;
     InterveneRun intervene;
     switch (control.action_case()) {
     case v1::RehearsalControl::kPause: return runner_->order(PauseRun{control.pause()});
-    case v1::RehearsalControl::kPace: {
-        const auto pace = checked_pace(control.pace());
-        if (!pace) return pace.error();
-        return runner_->order(PaceRun{*pace});
-    }
-    case v1::RehearsalControl::kStop:
-        if (!control.stop()) return Error{"stop: false asks for nothing"};
-        return runner_->order(StopRun{});
-    case v1::RehearsalControl::kInject:
-        *intervene.intervention.mutable_fault() = control.inject();
-        return runner_->order(std::move(intervene));
-    case v1::RehearsalControl::kNote:
-        if (auto checked = check_note(control.note().text(), control.note().by()); !checked) return checked;
-        *intervene.intervention.mutable_note() = control.note();
-        return runner_->order(std::move(intervene));
+    case v1::RehearsalControl::kPace: return runner_->order(PaceRun{control.pace()});
+    case v1::RehearsalControl::kStop: return runner_->order(StopRun{});
+    case v1::RehearsalControl::kInject: *intervene.intervention.mutable_fault() = control.inject(); break;
+    case v1::RehearsalControl::kNote: *intervene.intervention.mutable_note() = control.note(); break;
     case v1::RehearsalControl::kPlan:
-        if (control.plan().inject().empty()) return Error{"plan: the inject's id is wanted"};
         intervene.intervention.set_inject(control.plan().inject());
         if (control.plan().skip()) intervene.intervention.set_skipped(true);
-        return runner_->order(std::move(intervene));
-    default: return Error{"the control says nothing: start, pause, pace, stop, inject, note or plan is wanted"};
+        break;
+    case v1::RehearsalControl::kStart:
+    case v1::RehearsalControl::ACTION_NOT_SET: break;  // not carried out on a run, and no control
     }
+    return runner_->order(std::move(intervene));
 }
 
 void RehearsalManager::command(v1::CommandRequest request, const Sender& sender, const Reply& reply) {

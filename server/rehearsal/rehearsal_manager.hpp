@@ -70,6 +70,11 @@ class RehearsalManager {
                      ReadAgain read_again, TimelineQuestions timeline, Callbacks callbacks);
     ~RehearsalManager();
 
+    /// Checks what an order says by itself, whatever goes on: its pace, the scenario that it names, that it asks for
+    /// something. What only the run can tell, as a fault of its devices, is told when it is carried out.
+    Result<void> check_form(const v1::StartRehearsal& request) const;
+    Result<void> check_form(const v1::RehearsalControl& control) const;
+
     /// Starts a rehearsal. Fails at once when one is in progress or the scenario is unknown or impossible. Calls
     /// `began` once the run is in the archive, or when the analysis refuses the script's changes of the timeline.
     void start(const v1::StartRehearsal& request, Began began);
@@ -116,6 +121,7 @@ class RehearsalManager {
     RehearsalRunner::Callbacks callbacks_for(Began began);
     void begun(const Result<v1::RunState>& state, const Began& began);
     /// The plan that the request names or brings; none: neither.
+    Result<simulation::Scenario> scenario_of(const v1::StartRehearsal& request) const;
     Result<std::optional<PlannedInjects>> plan_of(const v1::StartRehearsal& request,
                                                   const simulation::Scenario& scenario) const;
     Result<void> order_of_run(const v1::RehearsalControl& control);

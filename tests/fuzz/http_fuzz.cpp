@@ -105,17 +105,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto answer = ask(server, asked);
     if (answer.status < 200 || answer.status > 599 || answer.status == 500 || answer.content_type.empty()) std::abort();
     if (answer.body.find(secret) != std::string::npos) std::abort();
-    if (answer.status >= 400 && answer.content_type == "application/json" && asked.path.starts_with("/api/")) {
-        v1::CommandReply refused;
-        v1::ErrorReply reply;
-        v1::SequenceReply sequence;
-        if (from_json(answer.body, sequence)) {
-            if (sequence.reason().empty()) std::abort();
-            return 0;
-        }
-        const bool command = from_json(answer.body, refused).ok();
-        if (command ? refused.reason().empty() : !from_json(answer.body, reply).ok() || reply.error().empty())
-            std::abort();
+    if (answer.status >= 400 && asked.path.starts_with("/api/")) {  // a problem, of whatever it is
+        if (answer.content_type != "application/problem+json") std::abort();
+        v1::ErrorReply problem;
+        v1::CommandReply command;
+        v1::SequenceReply file;
+        const auto said = from_json(answer.body, problem)   ? problem.detail()
+                          : from_json(answer.body, command) ? command.detail()
+                          : from_json(answer.body, file)    ? file.detail()
+                                                            : std::string{};
+        if (said.empty()) std::abort();
     }
     return 0;
 }

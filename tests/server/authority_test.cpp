@@ -224,6 +224,51 @@ TEST_CASE("each role may send over the stream what it may send by HTTP", "[acces
     }
 }
 
+TEST_CASE("a wish for an account that makes no sense is 422 and named; what is not possible now is 409",
+          "[access][http][bounds][R62]") {
+    Guarded guarded;
+    struct Wish {
+        const char* method;
+        const char* target;
+        const char* body;
+        unsigned status;
+        const char* says;
+    };
+    const Wish wishes[] = {
+        {"POST", "/api/v1/users", R"({"user":"nina","role":"nix","password":"given by another"})", 422,
+         "role: 'nix' is none of observer, controller"},
+        {"POST", "/api/v1/users", R"({"user":"Nina!","role":"observer","password":"given by another"})", 422,
+         "user: a name has 1 to"},
+        {"POST", "/api/v1/users", R"({"user":"nina","role":"observer","password":"short"})", 422, "password"},
+        {"POST", "/api/v1/users", R"({"user":"observer","role":"observer","password":"given by another"})", 409,
+         "there is a user 'observer' already"},
+        {"PATCH", "/api/v1/users/observer", R"({"role":"nix"})", 422, "role: 'nix' is none of"},
+        {"PATCH", "/api/v1/users/observer", "{}", 422, "the change says nothing: role, password"},
+        {"PATCH", "/api/v1/users/observer", R"({"commands":["NO_OP"],"all_commands":true})", 422, "one of them"},
+        {"PATCH", "/api/v1/users/observer", R"({"password":"short"})", 422, "password"},
+        {"PATCH", "/api/v1/users/observer", R"({"all_commands":"perhaps"})", 422, "all_commands: "},
+        {"PATCH", "/api/v1/users/someone", R"({"role":"observer"})", 409, "there is no user 'someone'"},
+        {"PATCH", "/api/v1/users/administrator", R"({"role":"observer"})", 409, "nobody changes their own"},
+        {"POST", "/api/v1/tokens", R"({"name":"robot","role":"nix"})", 422, "role: 'nix' is none of"},
+        {"POST", "/api/v1/tokens", R"({"name":"my robot","role":"observer"})", 422, "name: a name has 1 to"},
+        {"POST", "/api/v1/tokens", R"({"name":"robot","role":"observer","days":4000})", 422,
+         "days: 4000 is more than 3650"},
+        {"POST", "/api/v1/tokens", R"({"name":"robot","role":"observer","days":-1})", 422,
+         "days: -1 is not a whole number"},
+        {"POST", "/api/v1/tokens", R"({"name":"robot","role":"observer","days":0.5})", 422,
+         "days: 0.5 is not a whole number"},
+        {"POST", "/api/v1/tokens", R"({"name":"robot","role":"observer","owner":"someone"})", 409,
+         "owner: there is no user 'someone'"},
+    };
+    for (const auto& wish : wishes) {
+        const auto reply = guarded.ask("administrator", wish.method, wish.target, wish.body);
+        INFO(wish.method << ' ' << wish.target << ' ' << wish.body << " -> " << reply.body);
+        CHECK(reply.status == wish.status);
+        CHECK_THAT(reply.body, Catch::Contains(wish.says));
+    }
+    CHECK(guarded.ask("administrator", "GET", "/api/v1/tokens").body.find("robot") == std::string::npos);
+}
+
 TEST_CASE("a hazardous command by HTTP needs a director, and an account's own list binds it", "[access][http]") {
     Guarded guarded;
     REQUIRE(guarded

@@ -2,6 +2,7 @@
 #include "server/rehearsal/command_messages.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
 
 namespace server_command_messages_test {
 
@@ -56,6 +57,33 @@ TEST_CASE("what is no time is refused as the time at which a command leaves, and
     request.set_release_at("997.25");
     CHECK(server::request_of(request, {}).error().message ==
           "release_at: nobody knows which SCET the run has: a UTC time is wanted");
+}
+
+TEST_CASE("a command that makes no sense is known by what it says, before anybody knows the run's clocks",
+          "[gateway][bounds][R62]") {
+    const auto fault = [](const v1::CommandRequest& request) {
+        const auto checked = server::check_form(request, tests::shipped_dictionary());
+        return checked ? "" : checked.error().message;
+    };
+    v1::CommandRequest request;
+    request.set_command("NO_OP");
+    CHECK(fault(request).empty());
+    for (const char* at : {"2000-001T12:00:01", "ert:2000-001T12:00:01", "E-10:00", "997.25"}) {
+        INFO(at);
+        request.set_release_at(at);
+        CHECK(fault(request).empty());  // whether it is past, and what it means, the run knows
+    }
+    for (const char* at : {"NaN", "nan", "inf", "-Infinity", "1e300", "soon", "E+", "ert:"}) {
+        INFO(at);
+        request.set_release_at(at);
+        CHECK_THAT(fault(request), Catch::StartsWith("release_at: '" + std::string{at} + "' is no instant"));
+    }
+    request.clear_release_at();
+    request.set_client_id("a b");
+    CHECK_THAT(fault(request), Catch::StartsWith("client_id: "));
+    request.clear_client_id();
+    request.set_service("CD");
+    CHECK_THAT(fault(request), Catch::StartsWith("unknown service 'CD'"));
 }
 
 }  // namespace server_command_messages_test

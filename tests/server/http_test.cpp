@@ -211,6 +211,166 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
     }
 }
 
+TEST_CASE(
+    "a value that makes no sense is 422 and named with what is allowed, whatever goes on; what is not possible now "
+    "is 409",
+    "[http][bounds][R62]") {
+    constexpr const char *commands = "/api/v1/runs/latest/commands", *files = "/api/v1/runs/latest/sequences",
+                         *notes = "/api/v1/runs/latest/notes", *alarms = "/api/v1/runs/latest/alarms",
+                         *rehearsals = "/api/v1/rehearsals", *current = "/api/v1/rehearsals/current",
+                         *campaigns = "/api/v1/campaigns", *forecasts = "/api/v1/runs/latest/forecasts";
+    const Exchange table[] = {
+        {"POST", commands, R"({"command":"NO_OP","release_at":"NaN"})", 422, "release_at: 'NaN' is no instant: "},
+        {"POST", commands, R"({"command":"NO_OP","release_at":"Infinity"})", 422, "release_at: 'Infinity' is no "},
+        {"POST", commands, R"({"command":"NO_OP","release_at":"1e300"})", 422, "release_at: '1e300' is no instant: "},
+        {"POST", commands, R"({"command":"NO_OP","release_at":"soon"})", 422, "release_at: 'soon' is no instant: "},
+        {"POST", commands, R"({"command":"NO_OP","service":"CD"})", 422, "unknown service 'CD': AD, BD"},
+        {"POST", commands, R"({"command":"NO_OP","client_id":"a b"})", 422, "client_id: 1 to 64 of A-Z"},
+        {"POST", commands, R"({"command":"NO_OP","priority":-1})", 422,
+         "priority: -1 is not a whole number from 0 to 4294967295"},
+        {"POST", commands, R"({"command":"NO_OP","priority":0.5})", 422, "priority: 0.5 is not a whole number"},
+        {"POST", commands, R"({"command":"NO_OP","hold":"perhaps"})", 422,
+         "hold: \\\"perhaps\\\" is not true or false"},
+        {"POST", commands, R"({"command":"NO_OP","arguments":[{"name":"x","value":"NaN"}]})", 422,
+         "arguments[0].value: nan is not a finite number"},
+        {"POST", commands, R"({"command":"NO_OP","arguments":[{"name":"x","value":1}]})", 422,
+         "NO_OP has no argument 'x'"},
+        {"POST", commands, R"({"command":"EDL_SET_PARAMETERS"})", 422, "is missing"},
+        {"POST", commands, R"({"command":"NO_SUCH"})", 422, "unknown command 'NO_SUCH'"},
+        {"POST", commands, R"({"action":"launch","number":1})", 422, "unknown action 'launch': release, hold, cancel"},
+        {"POST", commands, R"({"action":"cancel"})", 422, "number: "},
+        {"POST", commands, R"({"action":"cancel","number":-1})", 422, "number: -1 is not a whole number from 0"},
+        {"POST", commands, R"({"action":"cancel","number":99})", 409, "99"},
+        {"POST", commands, R"({"command":"EDL_DO_EDL"})", 409, "must be armed first"},
+        {"POST", commands, R"({"command":"NO_OP","release_at":"2000-001T12:00:00"})", 409, "is past"},
+        {"POST", files, R"({"commands":[{"command":"NO_OP"},{"command":"NO_OP","service":"CD"}]})", 422,
+         "commands[1]: unknown service 'CD'"},
+        {"POST", files, R"({"commands":[{"command":"NO_OP","priority":-1}]})", 422, "commands[0].priority: -1 is not"},
+        {"POST", files, R"({"commands":[{"command":"NO_OP","client_id":"a"},{"command":"NO_OP","client_id":"a"}]})",
+         422, "client_id: 'a' is given to two commands"},
+        {"POST", files, R"({"commands":[{"command":"EDL_DO_EDL"},{"command":"NO_OP","release_at":"NaN"}]})", 422,
+         "commands[1]: release_at: 'NaN' is no instant"},
+        {"POST", files, R"({"commands":[{"command":"NO_OP"},{"command":"EDL_DO_EDL"}]})", 409,
+         "commands[1]: EDL_DO_EDL is hazardous"},
+        {"POST", notes, R"({"text":"x","by":"Ada","sclk":"NaN"})", 422, "sclk: nan is not a finite number"},
+        {"POST", alarms, R"({"channel":"speed_mps","action":"admire","by":"Ada"})", 422, "action: 'admire' is none of"},
+        {"POST", alarms, R"({"channel":"speed_mps","action":"shelve","shelve_s":"Infinity","by":"Ada"})", 422,
+         "shelve_s: inf is not a finite number"},
+        {"POST", alarms, R"({"channel":"speed_mps","action":"shelve","shelve_s":-1,"by":"Ada"})", 422, "shelve_s: -1"},
+        {"POST", rehearsals, R"({"scenario":"nominal","pace":"NaN"})", 422, "pace: nan is not a finite number"},
+        {"POST", rehearsals, R"({"scenario":"nominal","pace":-2})", 422, "pace: -2 is neither 0"},
+        {"POST", rehearsals, R"({"scenario":"nominal","seed":-1})", 422, "seed: -1 is not a whole number from 0"},
+        {"POST", rehearsals, R"({"scenario":"moon","pace":1})", 422, "moon"},
+        {"POST", rehearsals, R"({"fork":{"run":1,"at":"NaN"}})", 422, "fork.at: 'NaN' is no instant"},
+        {"POST", rehearsals, R"({"scenario":"nominal","pace":1})", 409, "goes on"},
+        {"POST", current, R"({"pace":"Infinity"})", 422, "pace: inf is not a finite number"},
+        {"POST", current, R"({"pace":-3})", 422, "pace: -3 is neither 0"},
+        {"POST", current, R"({"pause":"perhaps"})", 422, "pause: \\\"perhaps\\\" is not true or false"},
+        {"POST", campaigns, R"({"scenario":"campaign","cases":-3})", 422, "cases: -3 is not a whole number"},
+        {"POST", campaigns, R"({"scenario":"campaign","cases":1.5})", 422, "cases: 1.5 is not a whole number"},
+        {"POST", forecasts, R"({"from":"nix"})", 422, "from: \\\"nix\\\" is not one of "},
+        {"POST", forecasts, R"({"at":"NaN"})", 422, "'NaN' is no instant"},
+    };
+    RunningServer server{shipped_scenario("nominal"), 1.0};
+    const auto post = [&](std::string_view target, std::string_view body) {
+        return web_request(server.port(), "POST", target, body);
+    };
+    unsigned listens = 0;
+    for (int i = 0; i < 3000 && listens != 202; ++i) {
+        listens = post(commands, R"({"command":"NO_OP","dry_run":true})").status;
+        if (listens != 202) std::this_thread::sleep_for(std::chrono::milliseconds{20});
+    }
+    for (const auto& row : table) {
+        const auto reply = post(row.target, row.body);
+        INFO(row.target << ' ' << row.body << " -> " << reply.body);
+        CHECK(reply.status == row.status);
+        CHECK_THAT(reply.body, Catch::Contains(std::string{R"("detail":")"}) && Catch::Contains(row.says));
+        CHECK(reply.content_type == "application/problem+json");
+    }
+    CHECK_THAT(web_request(server.port(), "GET", "/api/v1/runs/latest/commands").body,
+               Catch::StartsWith(R"({"commands":[])"));
+
+    RunningServer idle;
+    const Exchange without_run[] = {
+        {"POST", commands, R"({"command":"NO_OP","release_at":"NaN"})", 422, "release_at: 'NaN' is no instant: "},
+        {"POST", commands, R"({"command":"NO_OP"})", 409, "no run goes on"},
+        {"POST", files, R"({"commands":[{"command":"NO_OP","service":"CD"}]})", 422, "commands[0]: unknown service"},
+        {"POST", files, R"({"commands":[{"command":"NO_OP"}]})", 409, "no run goes on"},
+        {"POST", current, R"({"pace":-3})", 422, "pace: -3 is neither 0"},
+        {"POST", current, R"({"stop":false})", 422, "false asks for nothing"},
+        {"POST", current, "{}", 422, "says nothing"},
+        {"POST", current, R"({"pace":3})", 409, "no rehearsal goes on"},
+    };
+    for (const auto& row : without_run) {
+        const auto reply = web_request(idle.port(), "POST", row.target, row.body);
+        INFO(row.target << ' ' << row.body << " -> " << reply.body);
+        CHECK(reply.status == row.status);
+        CHECK_THAT(reply.body, Catch::Contains(row.says));
+    }
+}
+
+TEST_CASE("a refused command, or command file, is a problem that has the members of its reply", "[http][R62]") {
+    RunningServer server{shipped_scenario("nominal"), 1.0};
+    const auto post = [&](const char* route, std::string_view body) {
+        return web_request(server.port(), "POST", fmt::format("/api/v1/runs/latest/{}", route), body);
+    };
+    WebReply taken;
+    for (int i = 0; i < 3000 && taken.status != 202; ++i) {
+        taken = post("commands", R"({"command":"NO_OP"})");
+        if (taken.status != 202) std::this_thread::sleep_for(std::chrono::milliseconds{20});
+    }
+    CHECK(taken.content_type == "application/json");
+    v1::CommandReply accepted;
+    REQUIRE(from_json(taken.body, accepted));
+    CHECK_FALSE(accepted.has_detail());
+    CHECK_FALSE(accepted.has_status());
+
+    const auto check_problem = [](const WebReply& answer, const auto& reply, unsigned status, const char* title) {
+        INFO(answer.body);
+        CHECK(answer.status == status);
+        CHECK(answer.content_type == "application/problem+json");
+        CHECK_FALSE(reply.accepted());
+        CHECK_FALSE(reply.reason().empty());
+        CHECK(reply.type() == "about:blank");
+        CHECK(reply.title() == title);
+        CHECK(reply.status() == status);
+        CHECK(reply.detail() == reply.reason());
+        CHECK(reply.error() == reply.reason());
+    };
+    const auto hazardous = post("commands", R"({"command":"EDL_DO_EDL","request":"41"})");
+    v1::CommandReply refused;
+    REQUIRE(from_json(hazardous.body, refused));
+    check_problem(hazardous, refused, 409, "Conflict");
+    CHECK(refused.request() == 41);
+    CHECK_THAT(refused.reason(), Catch::StartsWith("EDL_DO_EDL is hazardous"));
+    CHECK_FALSE(refused.octets().empty());  // as far as the checks came
+    CHECK(refused.preconditions_size() > 0);
+
+    const auto unknown = post("commands", R"({"command":"NO_OP","service":"CD","request":"42","dry_run":true})");
+    REQUIRE(from_json(unknown.body, refused));
+    check_problem(unknown, refused, 422, "Unprocessable Content");
+    CHECK(refused.request() == 42);
+    CHECK(refused.dry_run());
+
+    v1::SequenceReply file;
+    const auto spoilt = post("sequences", R"({"commands":[{"command":"NO_OP"},{"command":"EDL_DO_EDL"}]})");
+    REQUIRE(from_json(spoilt.body, file));
+    check_problem(spoilt, file, 409, "Conflict");
+    REQUIRE(file.commands_size() == 2);
+    CHECK(file.commands(0).accepted());
+    CHECK_FALSE(file.commands(1).has_detail());  // the file is the problem
+    const auto malformed =
+        post("sequences", R"({"commands":[{"command":"NO_OP"},{"command":"NO_OP","release_at":"NaN"}]})");
+    REQUIRE(from_json(malformed.body, file));
+    check_problem(malformed, file, 422, "Unprocessable Content");
+    REQUIRE(file.commands_size() == 2);
+    CHECK_FALSE(file.commands(0).octets().empty());
+    CHECK_THAT(file.commands(1).reason(), Catch::StartsWith("release_at: 'NaN'"));
+    const auto senseless = post("sequences", R"({"commands":[{"command":"NO_OP","priority":-1}]})");
+    REQUIRE(from_json(senseless.body, file));
+    check_problem(senseless, file, 422, "Unprocessable Content");
+}
+
 TEST_CASE("samples in Protobuf are those in JSON, bit for bit, in less than half the octets", "[http][R43]") {
     RunningServer server{shipped_scenario("nominal_auto"), 100.0};
     const auto ask = [&](const std::string& more) {
@@ -351,7 +511,8 @@ TEST_CASE("an instructor breaks something in the rehearsal that goes on, and is 
         {"", "",
          R"({"device_fault":{"device":"DEVICE_IMU","unit":"REDUNDANT_UNIT_A","kind":"DEVICE_FAULT_KIND_REFUSES","duration_s":1}})",
          422, "not possible"},
-        {"", "", R"({"device_fault":{"device":"DEVICE_IMU","unit":"C"}})", 400, "unit"},
+        {"", "", R"({"device_fault":{"device":"DEVICE_IMU","unit":"C"}})", 422,
+         "inject.device_fault.unit: \\\"C\\\" is not one of "},
     };
     for (const auto& row : refused) {
         const auto reply = control(row.body);

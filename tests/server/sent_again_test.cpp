@@ -63,7 +63,7 @@ TEST_CASE("a command sent again with its client's id is answered with the fate o
 
     const auto other = sent(server, R"({"command":"NO_OP","client_id":"shift-2:1","priority":3})", 409);
     CHECK_THAT(other.reason(), Catch::StartsWith("client_id: 'shift-2:1' is command 1 of this run"));
-    CHECK_THAT(sent(server, R"({"command":"NO_OP","client_id":"a b"})", 409).reason(),
+    CHECK_THAT(sent(server, R"({"command":"NO_OP","client_id":"a b"})", 422).reason(),
                Catch::StartsWith("client_id: 1 to 64 of"));
 
     const auto commands = history(server);
@@ -136,7 +136,7 @@ TEST_CASE("of a command file sent again only what is new goes", "[http][commands
     const auto twice =
         web_request(server.port(), "POST", "/api/v1/runs/latest/sequences",
                     R"({"commands":[{"command":"NO_OP","client_id":"9"},{"command":"NO_OP","client_id":"9"}]})");
-    CHECK(twice.status == 409);
+    CHECK(twice.status == 422);
     CHECK_THAT(twice.body, Catch::Contains("'9' is given to two commands"));
 }
 

@@ -18,7 +18,7 @@ class CommandRefused(AeolisError):
     """A command got no number. `reply` says which check refused it."""
 
     def __init__(self, status: int, reply: Any) -> None:
-        super().__init__(status, reply.reason)
+        super().__init__(status, reply.reason or reply.detail)
         self.reply = reply
 
 

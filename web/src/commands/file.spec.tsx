@@ -127,13 +127,17 @@ describe('sending a command file', () => {
     await forwardFile();
     expect([outcome.value?.text, text.value]).toEqual(['refused: commands[1]: the run is over; taken was #4', '']);
   });
-  it('is not armed while one of its commands would be refused, which is named', async () => {
+  it.each([
+    { status: 409, reason: 'EDL_DO_EDL must not be sent now' },
+    { status: 422, reason: "unknown service 'CD': AD, BD, or none for what suits" },
+  ])('is not armed while one of its commands would be refused ($status), which is named', async ({ status, reason }) => {
     server.routes[route] = {
-      status: 409,
+      status,
       json: {
         accepted: false,
-        reason: 'commands[1]: EDL_DO_EDL must not be sent now',
-        commands: [reply(), reply({ accepted: false, reason: 'EDL_DO_EDL must not be sent now' })],
+        reason: `commands[1]: ${reason}`,
+        commands: [reply(), reply({ accepted: false, reason })],
+        detail: `commands[1]: ${reason}`,
       },
     };
     await tryFile();

@@ -51,7 +51,7 @@ async function ask(run: RunStore, dryRun: boolean): Promise<SequenceAnswer> {
     if (isAnswer(answer)) return answer;
     throw new Refused(0, 'the answer cannot be read: whether it was taken is not known');
   } catch (error) {
-    if (error instanceof Refused && error.status === 409 && isAnswer(error.answer)) return error.answer;
+    if (error instanceof Refused && isAnswer(error.answer)) return error.answer;
     throw error;
   }
 }
