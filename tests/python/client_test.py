@@ -124,6 +124,16 @@ class Landed(unittest.TestCase):
         first = asyncio.run(numbers(0, 500))
         self.assertEqual(first + asyncio.run(numbers(first[-1])), everything)
 
+    def test_a_stream_gives_the_channels_that_are_named_by_name_or_alias(self) -> None:
+        with Client(self.server.address) as aeolis:
+            known = {channel.name: channel for channel in aeolis.dictionary().channels}
+            wanted = [known["altitude_m"], known["speed_mps"]]
+            names = ["altitude_m", known["speed_mps"].alias, "altitude_m"]
+            seen: set[int] = set()
+            for item in aeolis.subscribe(run=self.landed, channels=names, without_units=True):
+                seen.update(item.samples.ids)
+        self.assertEqual(seen, {channel.id for channel in wanted})
+
     def test_pages_come_to_all_events(self) -> None:
         with Client(self.server.address) as aeolis:
             by_tens = [item.seq for item in aeolis.events(run=self.landed, limit=10)]
@@ -150,8 +160,16 @@ class Landed(unittest.TestCase):
             self.assertEqual(caught.exception.status, 404)
             with self.assertRaisesRegex(AeolisError, "there is no channel 'altitud'"):
                 list(aeolis.subscribe(run=self.landed, channels=["altitud"]))
-            with self.assertRaisesRegex(CommandRefused, "NO_SUCH|no run"):
+            with self.assertRaisesRegex(CommandRefused, "422: unknown command 'NO_SUCH'") as refused:
                 aeolis.command("NO_SUCH")
+            self.assertEqual(refused.exception.status, 422)
+            self.assertEqual(refused.exception.reply.reason, refused.exception.detail)
+            with self.assertRaisesRegex(CommandRefused, "422: unknown service 'CD': AD, BD"):
+                aeolis.command("NO_OP", service="CD")
+            with self.assertRaisesRegex(CommandRefused, "422: release_at: 'nan' is no instant"):
+                aeolis.command("NO_OP", release_at=float("nan"))
+            with self.assertRaisesRegex(CommandRefused, "409: no run goes on"):
+                aeolis.command("NO_OP")
         threads = threading.active_count()
         with self.assertRaisesRegex(AeolisError, "http://127.0.0.1:1"):
             Client("http://127.0.0.1:1")
