@@ -420,7 +420,7 @@ void CarrierTracker::fit_waiting(std::vector<CarrierHop>& out) {
                 done.in_phase.clear();
             }
             follow(hops_[middle], fitted);
-            if (may_swing && fitted.length_s < window.length_s && fitted.seen >= swerve_seen) turn_waiting();
+            if (may_swing && fitted.swerves) turn_waiting();
             done.lock = settled_ && usual && fitted.length_s == window.length_s && !done.gap ? CarrierLock::locked
                                                                                              : CarrierLock::fluctuating;
             if (done.gap) done.lock = CarrierLock::coasting;

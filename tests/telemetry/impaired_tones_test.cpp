@@ -133,6 +133,17 @@ TEST_CASE("no kind of spoiled samples gives a wrong tone or one that was not sen
     }
 }
 
+TEST_CASE("a spur among the tones and bursts of noise do not turn the receiver away from its carrier", "[tones][R56]") {
+    for (const Case& one : cases()) {
+        if (one.kind + ", " + one.level != "spur among the tones, -3 dB" &&
+            one.kind + ", " + one.level != "bursts of noise, 30 dB")
+            continue;
+        const Count count = run(one, 80.0, 103);
+        INFO(one.kind << ", " << one.level << ": " << count);
+        CHECK(count.right == count.sent);
+    }
+}
+
 TEST_CASE("noise through filters, with spurs, steps and bursts holds no tone", "[tones][R56]") {
     for (const Case& one : cases()) {
         if (!one.is_short || (one.kind != "narrow passband" && one.kind != "slope" && one.kind != "bursts of noise" &&
