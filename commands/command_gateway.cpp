@@ -36,6 +36,11 @@ std::string same_person(std::string_view name) {
     return same;
 }
 
+Precedence precedence_of(const Request& request, const dictionary::Command& command) {
+    if (is_hazardous(command)) return Precedence::hazardous;
+    return request.director ? Precedence::director : Precedence::ordinary;
+}
+
 }  // namespace
 
 CommandGateway::CommandGateway(const dictionary::Dictionary& dictionary, double light_time_s,
@@ -166,10 +171,10 @@ void CommandGateway::queue(const Prepared& prepared, const Request& request, Ask
         if (condition.verdict == PreconditionReply::Verdict::unknown)
             not_known += (not_known.empty() ? "; left to flight: " : ", ") + condition.text;
     const auto* report = read_back_packet(dictionary_, *prepared.command);
-    auto& underway = underway_.emplace_back(Underway{
-        ++commands_, prepared.packet, prepared.arguments, request.controller, request.browser, request.client_id, "",
-        request.priority, request.director || is_hazardous(*prepared.command), prepared.wanted, report,
-        CommandLifecycle{*prepared.command, count_, light_time_s_, report != nullptr}});
+    auto& underway = underway_.emplace_back(
+        Underway{++commands_, prepared.packet, prepared.arguments, request.controller, request.browser,
+                 request.client_id, "", request.priority, precedence_of(request, *prepared.command), prepared.wanted,
+                 report, CommandLifecycle{*prepared.command, count_, light_time_s_, report != nullptr}});
     count_ = static_cast<std::uint16_t>((count_ + 1) % count_modulus);
 
     changes_.clear();
@@ -188,11 +193,27 @@ void CommandGateway::queue(const Prepared& prepared, const Request& request, Ask
     const CommandQueue::Entry entry{
         underway.number, request.priority,     prepared.release_at,
         request.hold,    reply.needs_approval, changes_offsets(prepared.command->name),
-        false,           underway.ahead,       asker_of(request.browser, request.controller)};
+        false,           underway.precedence,  asker_of(request.browser, request.controller)};
     queue_.add(entry);
     if (request.hold || prepared.release_at || reply.needs_approval || queue_.leaves_after(entry))
         tell_wait(underway, now, stages);
     release_due(now, stages);
+    if (waiting(underway.number) != nullptr && queue_.due(underway.number, now))
+        tell_turn(underway, now, reply, stages);
+}
+
+void CommandGateway::tell_turn(Underway& underway, Ert now, Reply& reply, std::vector<StageReport>& stages) {
+    changes_.clear();
+    underway.lifecycle.await_release(
+        fmt::format("waits for its turn: {} commands wait, and leave as the downlink has room for their answers",
+                    queue_.waiting().size()),
+        now, changes_);
+    append(underway, changes_, stages);
+    reply.leaves.reset();  // not settled
+    reply.arrives.reset();
+    reply.effect_seen.reset();
+    reply.deadline.reset();
+    reply.too_late_for.clear();
 }
 
 std::vector<Reply> CommandGateway::look(std::span<const Request> file, Ert now) {
@@ -228,8 +249,8 @@ void CommandGateway::note_refused(const Request& request, const std::string& rea
     const auto* command = dictionary_.command(request.command);
     if (command == nullptr) return;  // a script with an unknown command is not started
     auto prepared = prepare(request, now);
-    Underway refused{++commands_, {}, "",    "", "",      "",
-                     "",          0,  false, {}, nullptr, CommandLifecycle{*command, count_, light_time_s_, false}};
+    Underway refused{++commands_, {}, "", "", "",      "",
+                     "",          0,  {}, {}, nullptr, CommandLifecycle{*command, count_, light_time_s_, false}};
     if (prepared) {
         refused.packet = std::move(prepared->packet);
         refused.arguments = std::move(prepared->arguments);

@@ -36,8 +36,8 @@ namespace aeolis::commands {
 ///          released → radiated (commands/command_link); from then on commands/lifecycle follows the evidence in
 ///          telemetry
 /// Memory   at most `commands_max` commands under way, a few kilooctets each; the latest value of each channel
-/// Shares   nobody has more commands under way than places are free: commands/shares; those that may wait leave no
-///          faster than their answers can come down: commands/release_pace
+/// Shares   nobody has more commands under way than places are free: commands/shares; all but hazardous
+///          ones leave no faster than their answers can come down: commands/release_pace
 /// Faults   a refused request has no number, changes nothing, and the reply names the check and its values
 /// Timeline commands that change the timeline leave in the order of their numbers, as they were analysed. When one
 ///          fails, those behind it wait until the server has analysed the timeline without it. Each is judged when it
@@ -49,8 +49,8 @@ class CommandGateway {
   public:
     static constexpr std::size_t commands_max = 4096;  ///< under way at a time. Our assumption: a landing needs two
     /// Limits of commands at the uplink and of CLTUs radiated in a cycle: the vehicle's receiver holds eight, and hands
-    /// two a cycle to the flight software. Commands that may wait are handed over only as many as leave in a cycle, so
-    /// that one that passes ahead finds no more before it.
+    /// two a cycle to the flight software. Of those that are not hazardous only as many are handed over as leave in a
+    /// cycle, so that a hazardous one finds no more before it.
     static constexpr std::size_t at_uplink_max = 8, radiated_a_cycle_max = 2;
 
     /// `second_person`: names of commands that need the approval of a controller other than the one who asked.
@@ -108,6 +108,10 @@ class CommandGateway {
 
     /// Lets Earth's clock advance: ends the windows that have run out.
     void pass(Ert now, std::vector<StageReport>& stages);
+    /// Whether something could leave that waits for the uplink or for room in the downlink: then call release_due().
+    bool may_leave(Ert now) { return link_.waiting() > 0 || (waits_for_room_ && pace_.has_room(now)); }
+    /// Hands due commands to the uplink after checking their preconditions again with the latest values.
+    void release_due(Ert now, std::vector<StageReport>& stages);
 
   private:
     struct Underway {
@@ -116,7 +120,7 @@ class CommandGateway {
         std::string arguments, controller, browser, client_id;
         std::string timeline;  ///< verdict of a later analysis; empty: not analysed again
         std::uint32_t priority = 0;
-        bool ahead = false;  ///< hazardous, or a director's
+        Precedence precedence{};
         std::optional<Fop::Service> wanted;
         const dictionary::Packet* report = nullptr;  ///< the packet in which flight reads back this command
         CommandLifecycle lifecycle;
@@ -154,6 +158,8 @@ class CommandGateway {
     void tell(const Prepared& prepared, Ert now, Reply& reply) const;
     void queue(const Prepared& prepared, const Request& request, Asker asker, Ert now, Reply& reply,
                std::vector<StageReport>& stages);
+    /// Tells of a command that is due and waits for its turn; when it leaves is not settled then.
+    void tell_turn(Underway& underway, Ert now, Reply& reply, std::vector<StageReport>& stages);
     /// Whether a second person must approve it. Fails when approval is needed and the request names no controller.
     Result<bool> needs_approval(const Request& request) const;
     /// Holds, releases, cancels or approves a waiting command.
@@ -188,8 +194,6 @@ class CommandGateway {
                                    std::uint64_t number = 0) const;
     std::optional<timeline::Change> timeline_change(const dictionary::Command& command,
                                                     std::span<const std::uint8_t> packet) const;
-    /// Hands due commands to the uplink after checking their preconditions again with the latest values.
-    void release_due(Ert now, std::vector<StageReport>& stages);
     /// Applies the rule for times when no station sees the vehicle. Due commands, and those that the uplink has not
     /// radiated, wait for the next pass. Without a next pass every waiting command fails.
     void await_pass(Ert now, std::vector<StageReport>& stages);
@@ -219,6 +223,7 @@ class CommandGateway {
     std::vector<FieldPlace> clcw_;  ///< places of the CLCW in telemetry, one a computer; none in a dictionary without
     CommandQueue queue_;
     ReleasePace pace_;
+    bool waits_for_room_ = false;
     CommandLink link_;
     Uplink uplinks_;
     SolutionJudge solutions_;

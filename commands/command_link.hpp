@@ -37,10 +37,11 @@ class CommandLink {
 
     explicit CommandLink(double light_time_s);
 
-    /// The default service, by the rule above.
+    /// The default service, by the rule above; expedited, too, where the window of unacknowledged frames is full.
     Fop::Service suitable(Ert now) const {
         const bool counts_alike = fop_.state() == Fop::State::active || fop_.state() == Fop::State::retransmitting;
-        return hears(now) && counts_alike ? Fop::Service::sequence_controlled : Fop::Service::expedited;
+        return hears(now) && counts_alike && fop_.has_window() ? Fop::Service::sequence_controlled
+                                                               : Fop::Service::expedited;
     }
 
     /// Queues a packet. Fails as Fop::send() does.

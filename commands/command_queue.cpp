@@ -75,12 +75,19 @@ std::vector<std::uint64_t> CommandQueue::take_all() {
     return all;
 }
 
-std::optional<std::uint64_t> CommandQueue::take_next(Ert now, bool ahead_alone) {
-    if (ahead_alone && std::ranges::none_of(entries_, &Entry::ahead)) return {};
+bool CommandQueue::any_due(Ert now) const {
+    return std::ranges::any_of(entries_, [&](const Entry& each) { return is_due(each, now); });
+}
+
+std::optional<std::uint64_t> CommandQueue::take_next(Ert now, Precedence least) {
+    const bool is_others_turn = directors_in_a_row_ >= directors_in_a_row_max;
+    if (std::ranges::none_of(entries_, [&](const Entry& each) { return each.precedence >= least; })) return {};
     std::set<std::string_view> seen;  // an asker's first due command is the one to compare
     const auto rank = [&](const Entry& entry) {
         const auto turn = last_turn_.find(entry.asker);
-        return std::tuple{!entry.ahead, turn == last_turn_.end() ? 0 : turn->second, ~entry.priority, entry.number};
+        return std::tuple{entry.precedence != Precedence::hazardous,
+                          (entry.precedence == Precedence::director) == is_others_turn,
+                          turn == last_turn_.end() ? 0 : turn->second, ~entry.priority, entry.number};
     };
     auto next = entries_.end();
     for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
@@ -88,13 +95,17 @@ std::optional<std::uint64_t> CommandQueue::take_next(Ert now, bool ahead_alone) 
         seen.insert(entry->asker);
         if (next == entries_.end() || rank(*entry) < rank(*next)) next = entry;
     }
-    if (next == entries_.end() || (ahead_alone && !next->ahead)) return {};
+    if (next == entries_.end() || next->precedence < least) return {};
     const Entry taken = *next;
     entries_.erase(next);
-    if (std::ranges::find(entries_, taken.asker, &Entry::asker) == entries_.end())
-        last_turn_.erase(taken.asker);
-    else
-        last_turn_[taken.asker] = ++turns_;
+    // Kept when none of the asker's waits any more: whoever asks for one at a time does not begin anew each time.
+    last_turn_[taken.asker] = ++turns_;
+    if (last_turn_.size() > askers_max)
+        last_turn_.erase(std::ranges::min_element(last_turn_, {}, [](const auto& each) { return each.second; }));
+    if (taken.precedence == Precedence::director)
+        ++directors_in_a_row_;
+    else if (taken.precedence == Precedence::ordinary)
+        directors_in_a_row_ = 0;
     return taken.number;
 }
 

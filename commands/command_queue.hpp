@@ -11,15 +11,20 @@
 
 namespace aeolis::commands {
 
+enum class Precedence : std::uint8_t { ordinary, director, hazardous };
+
 /// Authorised commands that wait for their time, a controller or a second person's approval.
 ///
 /// Order    one asker's due commands: the higher priority first, equals by number, as they were requested. Among the
-///          next commands of all askers: first those that pass ahead, then the sender served least recently, then the
-///          higher priority. Commands that are `in_order` leave by number alone, because each was judged by the
+///          next commands of all askers: first the hazardous, then directors', but after `directors_in_a_row_max` of
+///          these another's, then the asker served least recently, then the higher priority. Commands that are `in_order` leave by number alone, because each was judged by the
 ///          effects of those before it
 /// Memory   one entry a command; the owner bounds their number
 class CommandQueue {
   public:
+    static constexpr std::size_t directors_in_a_row_max = 3;  ///< chosen
+    static constexpr std::size_t askers_max = 1024;           ///< chosen: more than have an account
+
     struct Entry {
         std::uint64_t number = 0;
         std::uint32_t priority = 0;
@@ -28,7 +33,7 @@ class CommandQueue {
         bool needs_approval = false;  ///< by a second person
         bool in_order = false;        ///< leaves after all others of this kind that have a smaller number
         bool doubted = false;         ///< an earlier command in order failed: it waits until it is judged anew
-        bool ahead = false;           ///< hazardous, or a director's: before others' commands
+        Precedence precedence{};      ///< over other askers' commands
         std::string asker{};          ///< whose share of the places it takes
     };
 
@@ -50,8 +55,9 @@ class CommandQueue {
     /// Whether the command waits for nothing else and can be taken out now.
     bool due(std::uint64_t number, Ert now) const;
     /// Takes out the next command to leave; none: none is due.
-    /// @param ahead_alone  of those that pass ahead
-    std::optional<std::uint64_t> take_next(Ert now, bool ahead_alone = false);
+    /// @param least  only of this precedence and above
+    std::optional<std::uint64_t> take_next(Ert now, Precedence least = Precedence::ordinary);
+    bool any_due(Ert now) const;
     /// Takes out all commands in the order of leaving.
     std::vector<std::uint64_t> take_all();
     /// Postpones the due commands to `until`; returns their numbers.
@@ -66,7 +72,8 @@ class CommandQueue {
     Entry* find(std::uint64_t number);
 
     std::vector<Entry> entries_;
-    std::map<std::string, std::uint64_t> last_turn_;  ///< by asker, of those with a command waiting
+    std::map<std::string, std::uint64_t> last_turn_;  ///< by asker, of the latest `askers_max`
+    std::size_t directors_in_a_row_ = 0;
     std::uint64_t turns_ = 0;
 };
 

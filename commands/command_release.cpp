@@ -21,9 +21,8 @@ void CommandGateway::release_due(Ert now, std::vector<StageReport>& stages) {
     begin_pass(now, stages);
     while (link_.waiting() < at_uplink_max) {
         const bool room = pace_.has_room(now) && link_.waiting() < radiated_a_cycle_max;
-        const auto number = queue_.take_next(now, !room);
+        const auto number = queue_.take_next(now, room ? Precedence::ordinary : Precedence::hazardous);
         if (!number) break;
-        pace_.count();
         auto* command = underway(*number);
         if (command == nullptr) continue;
         const std::string failing = failing_now(*command, now);
@@ -31,6 +30,7 @@ void CommandGateway::release_due(Ert now, std::vector<StageReport>& stages) {
         const auto taken = failing.empty() ? link_.send(*number, command->packet, service)
                                            : Result<void>{Error{"it must not be sent now: " + failing}};
         changes_.clear();
+        if (taken && command->precedence != Precedence::hazardous) pace_.count();
         if (taken)
             command->lifecycle.ground_stage(
                 Stage::released, Status::ok,
@@ -40,6 +40,7 @@ void CommandGateway::release_due(Ert now, std::vector<StageReport>& stages) {
             command->lifecycle.ground_stage(Stage::released, Status::failed, taken.error().message, now, changes_);
         append(*command, changes_, stages);
     }
+    waits_for_room_ = queue_.any_due(now);
     radiate(now, stages);
 }
 
@@ -75,7 +76,7 @@ void CommandGateway::wait_again(std::uint64_t number, std::optional<Ert> until, 
                                     false,
                                     changes_offsets(command->lifecycle.command().name),
                                     false,
-                                    command->ahead,
+                                    command->precedence,
                                     asker_of(command->browser, command->controller)};
     queue_.add(entry);
     std::vector<StageChange> changes;

@@ -89,6 +89,8 @@ class Fop {
     Halt why_halted() const { return why_halted_; }
     std::size_t outstanding() const { return outstanding_.size(); }
     std::size_t waiting() const { return waiting_.size() + expedited_.size(); }
+    /// Whether another sequence-controlled frame could go before one is acknowledged.
+    bool has_window() const { return outstanding_.size() + waiting_.size() < settings_.window; }
 
   private:
     struct Item {

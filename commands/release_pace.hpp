@@ -11,7 +11,7 @@ namespace aeolis::commands {
 /// How fast commands leave that may wait, so that the vehicle's downlink carries the answers of all.
 ///
 /// Rule     `at_once` leave without a pause; after that, as many as have their answers carried by half of the downlink.
-///          Commands that pass ahead never wait for it, and count while others have not used it up
+///          Hazardous commands neither wait for it nor count
 /// Reason   a command is answered by three events. Of events of one priority that find no room on board the oldest are
 ///          dropped, so a flood of answers would push out those of the command that matters
 class ReleasePace {
@@ -31,8 +31,8 @@ class ReleasePace {
         at_ = now;
         return left_ >= 1.0;
     }
-    /// Counts a command that leaves.
-    void count() { left_ = std::max(0.0, left_ - 1.0); }
+    /// Counts a command that leaves; there must be room.
+    void count() { left_ -= 1.0; }
 
   private:
     double each_second_;

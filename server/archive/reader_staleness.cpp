@@ -7,32 +7,40 @@
 namespace aeolis::archive {
 namespace {
 
-constexpr char times_sql[] =
-    "SELECT packet, sclk FROM packets WHERE key BETWEEN ?1 AND ?2 AND sampled = 1 AND EXISTS (SELECT 1 FROM recordings"
-    " WHERE run = ?3 AND recorded > 0) ORDER BY packet, sclk";
+constexpr char times_sql[] = "SELECT packet, sclk, source FROM packets WHERE key BETWEEN ?1 AND ?2 AND sampled = 1 AND "
+                             "EXISTS (SELECT 1 FROM recordings"
+                             " WHERE run = ?3 AND recorded > 0) ORDER BY packet, sclk";
 
-/// The stretches of one packet, whose times are added in order.
+/// The stretches of one packet, whose times are added in order. Between two that came live the recording may not be
+/// down yet, and the link's plan counts.
 class Stretches {
   public:
-    Stretches(v1::PacketStaleness& packet, double after_s, double first_s)
-        : packet_(&packet), after_s_(after_s), last_s_(first_s) {}
+    struct After {
+        double live_s = 0.0, recorded_s = 0.0;
+    };
+    Stretches(v1::PacketStaleness& packet, After after, double first_s)
+        : packet_(&packet), after_(after), last_s_(first_s) {}
 
-    void add(double sclk_s) {
-        if (sclk_s - last_s_ > after_s_) stale_from_last().set_to_sclk(sclk_s);
+    void add(double sclk_s, bool recorded) {
+        const double after_s = recorded || last_recorded_ ? after_.recorded_s : after_.live_s;
+        if (sclk_s - last_s_ > after_s) stale_from(last_s_ + after_s).set_to_sclk(sclk_s);
         last_s_ = sclk_s;
+        last_recorded_ = recorded;
     }
     /// After the last packet none has come.
-    void end() { stale_from_last(); }
+    void end() { stale_from(last_s_ + (last_recorded_ ? after_.recorded_s : after_.live_s)); }
 
   private:
-    v1::StaleStretch& stale_from_last() {
+    v1::StaleStretch& stale_from(double sclk_s) {
         auto& stretch = *packet_->add_stretches();
-        stretch.set_from_sclk(last_s_ + after_s_);
+        stretch.set_from_sclk(sclk_s);
         return stretch;
     }
 
     v1::PacketStaleness* packet_;
-    double after_s_, last_s_;
+    After after_;
+    double last_s_;
+    bool last_recorded_ = false;
 };
 
 }  // namespace
@@ -57,14 +65,16 @@ Result<v1::RecordedStaleness> Reader::recorded_staleness(RunId run) {
             stretches.reset();
             of = packet;
             const auto index = static_cast<std::size_t>(packet);
-            if (const auto after_s = telemetry::stale_in_recording_after_s(state_->dictionary, index)) {
+            const auto live_s = telemetry::stale_after_s(state_->dictionary, index);
+            if (const auto after_s = telemetry::stale_in_recording_after_s(state_->dictionary, index);
+                after_s && live_s) {
                 auto& added = *report.add_packets();
                 added.set_packet(state_->dictionary.packets[index].name);
                 added.set_stale_after_s(*after_s);
-                stretches.emplace(added, *after_s, sclk_s);
+                stretches.emplace(added, Stretches::After{*live_s, *after_s}, sclk_s);
             }
         }
-        if (stretches) stretches->add(sclk_s);
+        if (stretches) stretches->add(sclk_s, (*rows)->integer(2) == static_cast<std::int64_t>(Source::recorded));
     }
     if (stretches) stretches->end();
     return report;

@@ -86,7 +86,8 @@ int send(const SendOptions& options) {
     if (!answer->lost.empty()) return perhaps_taken(*sequence, answer->lost, options);
     v1::ErrorReply problem;  // that has nothing of a SequenceReply
     if (from_json(answer->body, problem))
-        return failed(fmt::format("send: refused ({}): {}", answer->status, problem.detail()));
+        return failed(fmt::format("send: refused ({}): {}", answer->status,
+                                  problem.detail().empty() ? problem.error() : problem.detail()));
     v1::SequenceReply reply;
     if (!from_json(answer->body, reply))
         return perhaps_taken(*sequence, fmt::format("the answer ({}) is not one of Aeolis", answer->status), options);

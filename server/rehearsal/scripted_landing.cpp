@@ -150,8 +150,12 @@ telemetry::Received& ScriptedLanding::step() {
 
 void ScriptedLanding::hear(telemetry::Received& received) {
     for (auto& packet : received.packets) receive(packet);
-    // Once a second suffices for windows of many seconds; what waits at the uplink leaves as soon as it may.
-    if (cycles_ % 64 == 0 || gateway_.at_uplink() > 0) gateway_.pass(landing_.ert_now(), stages_);
+    // Once a second suffices for windows of many seconds; what waits for its turn leaves as soon as it may.
+    const Ert now = landing_.ert_now();
+    if (cycles_ % 64 == 0)
+        gateway_.pass(now, stages_);
+    else if (gateway_.may_leave(now))
+        gateway_.release_due(now, stages_);
 }
 
 const telemetry::DecodedPacket& ScriptedLanding::decoded(telemetry::ReceivedPacket& packet) const {

@@ -36,6 +36,7 @@ constexpr double swerve_step_hzps2 = 800.0;       // of the rate's change: half 
 constexpr int swerve_steps = 3;                   // to either side: a parachute's snatch is 2000 Hz/s²; chosen
 constexpr double swerve_sigma_hz = 1.5;           // of the frequency, by a change of rate between the steps
 constexpr double swerve_seen = 0.9;               // of a window: with less many lines fit equally; chosen
+constexpr double turned_hz = 10.0;                // from the prediction: more than the noise of a short fit; chosen
 constexpr double false_swerve = 0.001;            // probability in noise; chosen
 constexpr double genuine_energy = 8.0;            // of a hop: with less its gain is smaller; chosen
 constexpr double genuine_gain = 0.1;              // of each hop: 1.2 s; chosen
@@ -420,7 +421,8 @@ void CarrierTracker::fit_waiting(std::vector<CarrierHop>& out) {
                 done.in_phase.clear();
             }
             follow(hops_[middle], fitted);
-            if (may_swing && fitted.swerves) turn_waiting();
+            const bool is_short = fitted.length_s < window.length_s && fitted.seen >= swerve_seen;
+            if (may_swing && (fitted.swerves || (is_short && std::abs(line.frequency_hz) > turned_hz))) turn_waiting();
             done.lock = settled_ && usual && fitted.length_s == window.length_s && !done.gap ? CarrierLock::locked
                                                                                              : CarrierLock::fluctuating;
             if (done.gap) done.lock = CarrierLock::coasting;

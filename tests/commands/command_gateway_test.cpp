@@ -403,9 +403,8 @@ TEST_CASE(
     CHECK(cycles <= static_cast<int>(CommandGateway::at_uplink_max));
 }
 
-TEST_CASE(
-    "commands that may wait leave no faster than their answers come down, and one that passes ahead leaves at once",
-    "[gateway][bounds][R63]") {
+TEST_CASE("commands that may wait leave no faster than their answers come down, and a hazardous one leaves at once",
+          "[gateway][bounds][R63]") {
     Station station;
     auto flood = request("NO_OP");
     flood.controller = "greedy";
@@ -419,9 +418,9 @@ TEST_CASE(
     const double carried = 60.0 * 1000.0 * ReleasePace::downlink_share / ReleasePace::answer_octets;
     CHECK(static_cast<double>(left) <= ReleasePace::at_once + carried + 1.0);
     CHECK(static_cast<double>(left) >= carried);
-    auto wanted = request("NO_OP");
-    wanted.controller = "director";
-    wanted.director = true;
+    auto wanted = request("EDL_DO_EDL");
+    wanted.armed = true;
+    wanted.confirmation = wanted.command;
     for (int i = 0; i < 2; ++i) REQUIRE(station.gateway.submit(wanted, at, station.stages).accepted);
     CHECK(station.gateway.take_uplinks().size() == CommandGateway::radiated_a_cycle_max);
 }

@@ -37,9 +37,32 @@ TEST_CASE("askers take turns, each in its own order, and what passes ahead does 
     for (std::uint64_t number = 1; number <= 4; ++number) queue.add({.number = number, .asker = "greedy"});
     queue.add({.number = 5, .asker = "careful"});
     queue.add({.number = 6, .asker = "careful"});
-    queue.add({.number = 7, .ahead = true, .asker = "director"});
+    queue.add({.number = 7, .precedence = Precedence::director, .asker = "director"});
     queue.add({.number = 8, .priority = 9, .asker = "greedy"});
     CHECK(leaving(queue, Ert{0}) == Numbers{7, 8, 5, 1, 6, 2, 3, 4});
+}
+
+TEST_CASE("hazardous commands leave first, and directors' leave every fourth turn to another",
+          "[commands][queue][R63]") {
+    CommandQueue queue;
+    for (std::uint64_t number = 1; number <= 8; ++number)
+        queue.add({.number = number, .precedence = Precedence::director, .asker = "director"});
+    for (std::uint64_t number = 11; number <= 13; ++number) queue.add({.number = number, .asker = "careful"});
+    queue.add({.number = 20, .precedence = Precedence::hazardous, .asker = "another"});
+    CHECK(queue.take_next(Ert{0}, Precedence::hazardous) == 20U);
+    CHECK_FALSE(queue.take_next(Ert{0}, Precedence::hazardous));
+    CHECK(leaving(queue, Ert{0}) == Numbers{1, 2, 3, 11, 4, 5, 6, 12, 7, 8, 13});
+}
+
+TEST_CASE("who asks for one command at a time takes turns with who has a queue", "[commands][queue][R63]") {
+    CommandQueue queue;
+    for (std::uint64_t number = 1; number <= 3; ++number) queue.add({.number = number, .asker = "patient"});
+    Numbers left;
+    for (std::uint64_t number = 11; number <= 13; ++number) {
+        queue.add({.number = number, .priority = 9, .asker = "one at a time"});
+        for (int i = 0; i < 2; ++i) left.push_back(queue.take_next(Ert{0}).value_or(0));
+    }
+    CHECK(left == Numbers{11, 1, 12, 2, 13, 3});
 }
 
 TEST_CASE("a command with a time leaves then and not before", "[commands][queue]") {

@@ -38,11 +38,4 @@ TEST_CASE("a pause lets no more than eight leave at once, and a clock that goes 
     CHECK(leaving(pace, 5000.0, 5000.0) == 8);
 }
 
-TEST_CASE("commands that pass ahead count, but leave no debt", "[commands][R63]") {
-    ReleasePace pace{8'000.0};
-    for (int i = 0; i < 100; ++i) pace.count();
-    CHECK_FALSE(pace.has_room(at_s(0.0)));
-    CHECK(pace.has_room(at_s(1.0)));
-}
-
 }  // namespace commands_release_pace_test

@@ -89,8 +89,8 @@ TEST_CASE("a command file is sent to a server by the program, whole or not at al
     CHECK_THAT(wrong.text, Catch::Contains("77"));
 }
 
-TEST_CASE("a command file whose answer is lost, or is none of ours, may have been taken: exit code 3, and how to send "
-          "it again",
+TEST_CASE("a command file whose answer is lost, or is none of ours, may have been taken, and how to send it again is "
+          "said",
           "[cli][http][R44]") {
     namespace asio = boost::asio;
     namespace http = boost::beast::http;

@@ -480,7 +480,7 @@ Octets packet_of(std::uint8_t apid, const std::string& data) {
 
 TEST_CASE(
     "of a followed mission the newest is what was received last, undefined is a sample, and texts and 64-bit numbers "
-    "are exact: in channels, state, export and stream; a clock that restarts, and packets without one, are told",
+    "are exact, in channels, state, export and stream; a clock that restarts, and packets without one, are told",
     "[server][downlink][R53][R54]") {
     const auto mission = mission_of(odd_xtce);
     Follower follower{*mission, "udp://127.0.0.1:0", {.name = "packets", .skip = 0, .frame_octets = {}}};

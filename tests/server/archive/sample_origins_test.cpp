@@ -183,4 +183,24 @@ TEST_CASE("once some of the recording has come, the archive says when packets we
     CHECK(stale() == "Navigation after 5 s: 1046-");
 }
 
+TEST_CASE("where the recording has not come, a packet that the link's plan thins is not stale between two",
+          "[reader][archive][R43]") {
+    Landing landing;
+    dictionary::TelemetryPlanRow thinned;
+    thinned.packet = "Navigation";
+    thinned.every.fill(512);  // of 64 Hz: 8 s
+    landing.dictionary.telemetry_plan.push_back(thinned);
+    landing.take(recorded(Landing::packet(50)));
+    REQUIRE(landing.pipeline.commit().ok());
+    auto reader = std::move(Reader::open(landing.folder / "a.db", landing.dictionary)).value();
+    const auto report = reader.recorded_staleness(RunId{1});
+    REQUIRE(report.ok());
+    REQUIRE(report->packets_size() == 1);
+    // 1019 to 1035 came live, before four intervals of the plan were over; from 1039 to 1050 the second is recorded: 5 s.
+    INFO(report->ShortDebugString());
+    REQUIRE(report->packets(0).stretches_size() == 2);
+    CHECK(report->packets(0).stretches(0).from_sclk() == 1044.0);
+    CHECK(report->packets(0).stretches(1).from_sclk() == 1055.0);
+}
+
 }  // namespace archive_sample_origins_test
