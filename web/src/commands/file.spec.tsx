@@ -130,21 +130,24 @@ describe('sending a command file', () => {
   it.each([
     { status: 409, reason: 'EDL_DO_EDL must not be sent now' },
     { status: 422, reason: "unknown service 'CD': AD, BD, or none for what suits" },
-  ])('is not armed while one of its commands would be refused ($status), which is named', async ({ status, reason }) => {
-    server.routes[route] = {
-      status,
-      json: {
-        accepted: false,
-        reason: `commands[1]: ${reason}`,
-        commands: [reply(), reply({ accepted: false, reason })],
-        detail: `commands[1]: ${reason}`,
-      },
-    };
-    await tryFile();
-    expect(triedNow.value?.answer?.commands.map((each) => each.accepted)).toEqual([true, false]);
-    await forwardFile();
-    expect([stage.value, sent().length]).toEqual(['review', 0]);
-  });
+  ])(
+    'is not armed while one of its commands would be refused ($status), which is named',
+    async ({ status, reason }) => {
+      server.routes[route] = {
+        status,
+        json: {
+          accepted: false,
+          reason: `commands[1]: ${reason}`,
+          commands: [reply(), reply({ accepted: false, reason })],
+          detail: `commands[1]: ${reason}`,
+        },
+      };
+      await tryFile();
+      expect(triedNow.value?.answer?.commands.map((each) => each.accepted)).toEqual([true, false]);
+      await forwardFile();
+      expect([stage.value, sent().length]).toEqual(['review', 0]);
+    },
+  );
   it('is armed for one run as it stood then: neither for another, nor after a look at the past', async () => {
     const armed = async (look: () => void) => {
       useForTest(aStore(), aDictionary);
