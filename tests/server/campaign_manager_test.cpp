@@ -178,7 +178,7 @@ TEST_CASE("a campaign that cannot be flown, or does not exist, is refused by nam
     };
     const Row rows[] = {
         {"POST", "/api/v1/campaigns", "{", 400, "StartCampaign"},
-        {"POST", "/api/v1/campaigns", R"({"scenario":"campaign","cases":-1})", 400, "StartCampaign"},
+        {"POST", "/api/v1/campaigns", R"({"scenario":"campaign","cases":-1})", 422, "cases: -1 is not a whole number"},
         {"POST", "/api/v1/campaigns", R"({"scenario":"campaign","cases":3,"pace":1})", 400, "pace"},
         {"POST", "/api/v1/campaigns", R"({"scenario":"campaign"})", 422, "cases: 0 is not within 1 … 10000"},
         {"POST", "/api/v1/campaigns", R"({"scenario":"campaign","cases":10001})", 422, "10001"},
