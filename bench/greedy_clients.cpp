@@ -5,11 +5,7 @@
 #include "bench/must.hpp"
 
 #include <chrono>
-#include <csignal>
 #include <cstring>
-#include <sys/mman.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
 #include <vector>
@@ -22,14 +18,8 @@ constexpr std::size_t command_threads = 8;  ///< each waits for its answers
 }  // namespace
 
 GreedyClients::GreedyClients() {
-    void* const shared =
-        ::mmap(nullptr, sizeof(SharedCounters), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    must(shared != MAP_FAILED, "mmap");
-    counters_ = new (shared) SharedCounters;
-    process_ = ::fork();
-    must(process_ >= 0, "fork");
+    process_ = fork_clients();
     if (process_ != 0) return;
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     while (counters_->port == 0) std::this_thread::sleep_for(std::chrono::milliseconds{1});
     std::vector<std::thread> threads;
     for (std::size_t i = 0; i < questions_at_once; ++i) threads.emplace_back([this] { ask(*counters_); });
@@ -38,9 +28,7 @@ GreedyClients::GreedyClients() {
 }
 
 GreedyClients::~GreedyClients() {
-    ::kill(process_, SIGKILL);
-    ::waitpid(process_, nullptr, 0);
-    ::munmap(counters_, sizeof(SharedCounters));
+    kill_clients(process_);
 }
 
 void GreedyClients::begin(std::uint16_t port, const Targets& targets) {

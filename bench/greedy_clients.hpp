@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "bench/client_process.hpp"
+
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -40,7 +42,7 @@ class GreedyClients {
     static void ask(SharedCounters& counters);
     static void command(SharedCounters& counters);
 
-    SharedCounters* counters_;
+    Shared<SharedCounters> counters_;
     int process_ = -1;
 };
 

@@ -5,25 +5,15 @@
 #include "bench/must.hpp"
 
 #include <chrono>
-#include <csignal>
 #include <cstring>
-#include <sys/mman.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
 #include <utility>
 
 namespace aeolis::bench {
 ListReaders::ListReaders(std::vector<std::string> targets) {
-    void* const shared =
-        ::mmap(nullptr, sizeof(SharedCounters), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    must(shared != MAP_FAILED, "mmap");
-    counters_ = new (shared) SharedCounters;
-    process_ = ::fork();
-    must(process_ >= 0, "fork");
+    process_ = fork_clients();
     if (process_ != 0) return;
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     while (counters_->port == 0) std::this_thread::sleep_for(std::chrono::milliseconds{1});
     std::vector<std::thread> threads;
     for (std::size_t reader = 0; reader < readers; ++reader)
@@ -33,9 +23,7 @@ ListReaders::ListReaders(std::vector<std::string> targets) {
 }
 
 ListReaders::~ListReaders() {
-    ::kill(process_, SIGKILL);
-    ::waitpid(process_, nullptr, 0);
-    ::munmap(counters_, sizeof(SharedCounters));
+    kill_clients(process_);
 }
 
 void ListReaders::begin(std::uint16_t port, const std::vector<std::string>& tokens) {

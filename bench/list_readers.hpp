@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "bench/client_process.hpp"
+
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -40,7 +42,7 @@ class ListReaders {
     };
     static void read_lists(SharedCounters& counters, std::size_t reader, const std::vector<std::string>& targets);
 
-    SharedCounters* counters_;
+    Shared<SharedCounters> counters_;
     int process_ = -1;
 };
 

@@ -53,8 +53,8 @@ constexpr std::size_t clients = 1000, watched = 4, watched_channels = 30;  // on
 constexpr std::size_t packet_kinds = 32, packets_per_s = 2000, channels_a_packet = 368;  // 1.5 kB
 constexpr std::size_t events_per_s = 10, tones_per_s = 1, stages_per_s = 2;
 constexpr int stalled_receive_octets = 4096;  // otherwise the kernel would read for it
-// From so little room the sender learns that there is some only by its next probe, which may be seconds later (ss -tino:
-// "timer:(persist"). Who reads on has an ordinary buffer.
+// From so little room the sender learns that there is some only by its next probe, which may be seconds later
+// (ss -tino: "timer:(persist"). Who reads on has an ordinary buffer.
 constexpr int reading_receive_octets = 1 << 18;
 constexpr double seconds = 10.0, seconds_with_lists_max = 60.0;
 constexpr double sample_rate_hz = 20.0;

@@ -14,7 +14,6 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/epoll.h>
-#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -192,14 +191,9 @@ LoopbackClients::LoopbackClients() {
     ::getrlimit(RLIMIT_NOFILE, &files);
     files.rlim_cur = files.rlim_max;
     ::setrlimit(RLIMIT_NOFILE, &files);
-    void* const shared =
-        ::mmap(nullptr, sizeof(SharedCounters), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    must(shared != MAP_FAILED, "mmap");
-    counters_ = new (shared) SharedCounters;
     int ends[2];
     must(::pipe(ends) == 0, "pipe");
-    process_ = ::fork();
-    must(process_ >= 0, "fork");
+    process_ = fork_clients();
     if (process_ == 0) {
         ::close(ends[1]);
         be_clients(*counters_, ends[0]);
@@ -212,7 +206,6 @@ LoopbackClients::~LoopbackClients() {
     if (counters_->phase % 2 == 1) close();
     ::close(pipe_);
     ::waitpid(process_, nullptr, 0);
-    ::munmap(counters_, sizeof(SharedCounters));
 }
 
 void LoopbackClients::connect(std::uint16_t port, const Settings& settings) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "bench/client_process.hpp"
+
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -54,7 +56,7 @@ class LoopbackClients {
     double latency_ms(double quantile) const;
 
   private:
-    SharedCounters* counters_;
+    Shared<SharedCounters> counters_;
     int pipe_ = -1;  ///< settings to the other process
     int process_ = -1;
 };

@@ -198,22 +198,22 @@ void CommandGateway::queue(const Prepared& prepared, const Request& request, Ask
     if (request.hold || prepared.release_at || reply.needs_approval || queue_.leaves_after(entry))
         tell_wait(underway, now, stages);
     release_due(now, stages);
-    if (waiting(underway.number) != nullptr && queue_.due(underway.number, now))
-        tell_turn(underway, now, reply, stages);
+    if (!waits_for_turn(underway, now)) return;
+    tell_turn(underway, now, stages);
+    reply.leaves.reset();  // not settled
+    reply.arrives.reset();
+    reply.effect_seen.reset();
+    reply.deadline.reset();
+    reply.too_late_for.clear();
 }
 
-void CommandGateway::tell_turn(Underway& underway, Ert now, Reply& reply, std::vector<StageReport>& stages) {
+void CommandGateway::tell_turn(Underway& underway, Ert now, std::vector<StageReport>& stages) {
     changes_.clear();
     underway.lifecycle.await_release(
         fmt::format("waits for its turn: {} commands wait, and leave as the downlink has room for their answers",
                     queue_.waiting().size()),
         now, changes_);
     append(underway, changes_, stages);
-    reply.leaves.reset();  // not settled
-    reply.arrives.reset();
-    reply.effect_seen.reset();
-    reply.deadline.reset();
-    reply.too_late_for.clear();
 }
 
 std::vector<Reply> CommandGateway::look(std::span<const Request> file, Ert now) {
@@ -382,6 +382,7 @@ void CommandGateway::go_on(Underway& underway, Ert now, std::vector<StageReport>
     // A due command while no station sees the vehicle is reported below, with the pass that it waits for.
     if (stations_.sees(now) || !queue_.due(underway.number, now)) tell_wait(underway, now, stages);
     release_due(now, stages);
+    if (waits_for_turn(underway, now)) tell_turn(underway, now, stages);
 }
 
 Result<void> CommandGateway::judge(const TimelineVerdict& verdict, Ert now, std::vector<StageReport>& stages) {

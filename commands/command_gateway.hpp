@@ -36,8 +36,8 @@ namespace aeolis::commands {
 ///          released → radiated (commands/command_link); from then on commands/lifecycle follows the evidence in
 ///          telemetry
 /// Memory   at most `commands_max` commands under way, a few kilooctets each; the latest value of each channel
-/// Shares   nobody has more commands under way than places are free: commands/shares; all but hazardous
-///          ones leave no faster than their answers can come down: commands/release_pace
+/// Shares   nobody has more commands under way than places are free: commands/shares. All but the hazardous leave no
+///          faster than their answers can come down: commands/release_pace
 /// Faults   a refused request has no number, changes nothing, and the reply names the check and its values
 /// Timeline commands that change the timeline leave in the order of their numbers, as they were analysed. When one
 ///          fails, those behind it wait until the server has analysed the timeline without it. Each is judged when it
@@ -158,8 +158,11 @@ class CommandGateway {
     void tell(const Prepared& prepared, Ert now, Reply& reply) const;
     void queue(const Prepared& prepared, const Request& request, Asker asker, Ert now, Reply& reply,
                std::vector<StageReport>& stages);
-    /// Tells of a command that is due and waits for its turn; when it leaves is not settled then.
-    void tell_turn(Underway& underway, Ert now, Reply& reply, std::vector<StageReport>& stages);
+    /// Whether the command is due and waits for its turn; when it leaves is not settled then.
+    bool waits_for_turn(const Underway& underway, Ert now) const {
+        return stations_.sees(now) && queue_.due(underway.number, now);
+    }
+    void tell_turn(Underway& underway, Ert now, std::vector<StageReport>& stages);
     /// Whether a second person must approve it. Fails when approval is needed and the request names no controller.
     Result<bool> needs_approval(const Request& request) const;
     /// Holds, releases, cancels or approves a waiting command.
@@ -223,7 +226,7 @@ class CommandGateway {
     std::vector<FieldPlace> clcw_;  ///< places of the CLCW in telemetry, one a computer; none in a dictionary without
     CommandQueue queue_;
     ReleasePace pace_;
-    bool waits_for_room_ = false;
+    bool waits_for_room_ = false;  ///< a due command stayed behind when those that could were released
     CommandLink link_;
     Uplink uplinks_;
     SolutionJudge solutions_;

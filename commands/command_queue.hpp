@@ -17,8 +17,8 @@ enum class Precedence : std::uint8_t { ordinary, director, hazardous };
 ///
 /// Order    one asker's due commands: the higher priority first, equals by number, as they were requested. Among the
 ///          next commands of all askers: first the hazardous, then directors', but after `directors_in_a_row_max` of
-///          these another's, then the asker served least recently, then the higher priority. Commands that are `in_order` leave by number alone, because each was judged by the
-///          effects of those before it
+///          these another's, then the asker served least recently, then the higher priority. Commands that are
+///          `in_order` leave by number alone, because each was judged by the effects of those before it
 /// Memory   one entry a command; the owner bounds their number
 class CommandQueue {
   public:

@@ -46,6 +46,7 @@ void CommandGateway::release_due(Ert now, std::vector<StageReport>& stages) {
 
 void CommandGateway::await_pass(Ert now, std::vector<StageReport>& stages) {
     unseen_ = true;
+    waits_for_room_ = false;
     const auto not_radiated = link_.take_back();
     if (const auto* next = stations_.next_after(now)) {
         for (const std::uint64_t number : queue_.postpone_due(now, next->begin))

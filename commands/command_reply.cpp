@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The details of a reply besides acceptance or refusal.
+#include "commands/authorise.hpp"
 #include "commands/command_gateway.hpp"
 
 #include "common/check.hpp"
@@ -12,7 +13,9 @@ void CommandGateway::tell(const Prepared& prepared, Ert now, Reply& reply) const
     reply.arguments = prepared.arguments;
     reply.preconditions = prepared.preconditions;
     reply.service = prepared.wanted.value_or(link_.suitable(now)) == Fop::Service::expedited ? "BD" : "AD";
-    tell_arrival(*prepared.command, prepared.packet, now, prepared.release_at.value_or(now), reply);
+    const bool leaves_at_once = is_hazardous(*prepared.command) || !waits_for_room_;
+    if (prepared.release_at || leaves_at_once)
+        tell_arrival(*prepared.command, prepared.packet, now, prepared.release_at.value_or(now), reply);
 }
 
 void CommandGateway::tell_arrival(const dictionary::Command& command, std::span<const std::uint8_t> packet, Ert now,
@@ -38,6 +41,7 @@ void CommandGateway::tell_leaving(const Underway& command, Ert now, Reply& reply
     const auto* entry = waiting(command.number);
     const bool waits = entry != nullptr && !entry->held && !entry->needs_approval;
     if (!waits && command.lifecycle.status(Stage::released) != Status::ok) return;
+    if (waits && waits_for_turn(command, now)) return;
     const Ert leaves = waits ? std::max(entry->release_at.value_or(now), now) : now;
     tell_arrival(command.lifecycle.command(), command.packet, now, leaves, reply);
     tell_station(leaves, reply);

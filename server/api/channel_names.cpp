@@ -14,4 +14,11 @@ Result<const dictionary::Channel*> channel_named(const dictionary::Dictionary& d
                              nearest(name, dictionary.channels, &dictionary::Channel::name))};
 }
 
+std::map<std::string, std::uint32_t, std::less<>> channel_ids(const dictionary::Dictionary& dictionary) {
+    std::map<std::string, std::uint32_t, std::less<>> ids;
+    for (const auto& channel : dictionary.channels)
+        for (const auto& word : {channel.name, channel.alias}) ids.try_emplace(word, channel.id.value);
+    return ids;
+}
+
 }  // namespace aeolis::server

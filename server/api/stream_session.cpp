@@ -11,8 +11,8 @@
 namespace aeolis::server {
 namespace {
 
-/// Chosen: of one subscription; each is found by going through the dictionary. all_channels names them all.
-constexpr int channel_names_max = 4'096;
+constexpr int channel_names_max = 4'096;              // chosen: of one subscription; all_channels names them all
+constexpr std::size_t channel_name_octets_max = 256;  // chosen: no dictionary's names are as long
 
 bool is_over(const v1::RunState& run) {
     return run.state() == v1::RunState::finished || run.state() == v1::RunState::interrupted;
@@ -25,6 +25,8 @@ Result<std::vector<std::uint32_t>> channels_of(const v1::Subscribe& subscribe, c
                                  subscribe.channel_names_size(), channel_names_max)};
     std::vector<std::uint32_t> ids{subscribe.channels().begin(), subscribe.channels().end()};
     for (const auto& name : subscribe.channel_names()) {
+        if (name.size() > channel_name_octets_max)
+            return Error{fmt::format("channel_names: one of {} octets is no name of a channel", name.size())};
         const auto id = services.channel_id(name);
         if (!id) return id.error();
         ids.push_back(*id);

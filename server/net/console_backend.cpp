@@ -318,10 +318,9 @@ StreamHub::Services ConsoleBackend::stream_services() {
         items_wanted_ = wanted;
         if (pipeline_) pipeline_->want_items(wanted);
     };
-    services.channel_id = [this](const std::string& name) -> Result<std::uint32_t> {
-        const auto channel = channel_named(dictionary_, "channel_names", name);
-        if (!channel) return channel.error();
-        return (*channel)->id.value;
+    services.channel_id = [this, ids = channel_ids(dictionary_)](const std::string& name) -> Result<std::uint32_t> {
+        if (const auto id = ids.find(name); id != ids.end()) return id->second;
+        return channel_named(dictionary_, "channel_names", name).error();
     };
     return services;
 }

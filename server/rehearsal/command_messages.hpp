@@ -19,8 +19,8 @@ namespace aeolis::server {
 /// may send hazardous commands.
 Result<commands::Request> request_of(const v1::CommandRequest& message, const archive::RunClocks& clocks,
                                      const std::string& browser = {}, bool director = false);
-/// Checks what a request says by itself, whatever the run does: see commands::check_form(). Also its `release_at` must be
-/// an instant, and its `client_id` of its form.
+/// Checks what a request says by itself, whatever the run does: see commands::check_form(). Also its `release_at` must
+/// be an instant, and its `client_id` of its form.
 Result<void> check_form(const v1::CommandRequest& message, const dictionary::Dictionary& dictionary);
 v1::CommandReply message_of(const commands::Reply& reply);
 commands::TimelineVerdict verdict_of(const v1::TimelineVerdict& message);

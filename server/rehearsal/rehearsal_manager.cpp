@@ -65,6 +65,12 @@ Result<void> RehearsalManager::refusal_while_going_on() const {
 }
 
 Result<void> RehearsalManager::check_form(const v1::StartRehearsal& request) const {
+    if (auto formed = check_words(request); !formed || flies_again(request)) return formed;
+    const auto scenario = scenario_of(request);
+    return scenario ? Result<void>{} : Result<void>{scenario.error()};
+}
+
+Result<void> RehearsalManager::check_words(const v1::StartRehearsal& request) {
     if (const auto pace = check_pace(request.pace()); !pace) return pace;
     const bool planned = !request.plan().empty() || !request.inline_plan().empty();
     if (flies_again(request)) {
@@ -75,8 +81,7 @@ Result<void> RehearsalManager::check_form(const v1::StartRehearsal& request) con
     }
     if (!request.plan().empty() && !request.inline_plan().empty())
         return Error{"plan and inline_plan: one of them, not both"};
-    const auto scenario = scenario_of(request);
-    return scenario ? Result<void>{} : Result<void>{scenario.error()};
+    return {};
 }
 
 Result<void> RehearsalManager::check_form(const v1::RehearsalControl& control) const {
@@ -104,7 +109,7 @@ Result<simulation::Scenario> RehearsalManager::scenario_of(const v1::StartRehear
 
 void RehearsalManager::start(const v1::StartRehearsal& request, Began began) {
     if (const auto busy = refusal_while_going_on(); !busy) return began(busy.error());
-    if (const auto formed = check_form(request); !formed) return began(formed.error());
+    if (const auto formed = check_words(request); !formed) return began(formed.error());
     const double pace = request.pace();
     if (flies_again(request))
         return read_again_(request, [this, began = std::move(began), pace](Result<RehearsalRunner::Again> again) {

@@ -120,8 +120,10 @@ class RehearsalManager {
     void fly_again(RehearsalRunner::Again again, double pace, Began began);
     RehearsalRunner::Callbacks callbacks_for(Began began);
     void begun(const Result<v1::RunState>& state, const Began& began);
-    /// The plan that the request names or brings; none: neither.
+    /// Checks what a start says by itself, but for the scenario.
+    static Result<void> check_words(const v1::StartRehearsal& request);
     Result<simulation::Scenario> scenario_of(const v1::StartRehearsal& request) const;
+    /// The plan that the request names or brings; none: neither.
     Result<std::optional<PlannedInjects>> plan_of(const v1::StartRehearsal& request,
                                                   const simulation::Scenario& scenario) const;
     Result<void> order_of_run(const v1::RehearsalControl& control);

@@ -425,6 +425,36 @@ TEST_CASE("commands that may wait leave no faster than their answers come down, 
     CHECK(station.gateway.take_uplinks().size() == CommandGateway::radiated_a_cycle_max);
 }
 
+TEST_CASE("a command that waits for its turn says so, and neither its reply nor a dry run tells when it leaves",
+          "[gateway][R63]") {
+    Station station;
+    Reply reply;
+    for (int i = 0; i < 3; ++i) reply = station.send(request("NO_OP"));
+    CHECK(reply.accepted);
+    CHECK(reply.leaves == now);  // two left in this cycle, and two may stand at the uplink
+    for (int i = 0; i < 3; ++i) reply = station.send(request("NO_OP"));
+    CHECK(reply.accepted);
+    CHECK_FALSE(reply.leaves);
+    CHECK_FALSE(reply.arrives);
+    const auto* waits = station.latest("released");
+    REQUIRE(waits != nullptr);
+    CHECK(waits->status == Status::pending);
+    CHECK(waits->evidence ==
+          "waits for its turn: 2 commands wait, and leave as the downlink has room for their answers");
+    auto tried = request("NO_OP");
+    tried.dry_run = true;
+    CHECK_FALSE(station.send(tried).leaves);
+    auto hazardous = request("EDL_DO_EDL");
+    hazardous.armed = hazardous.dry_run = true;
+    hazardous.confirmation = hazardous.command;
+    CHECK(station.send(hazardous).leaves == now);
+    for (int cycle = 1; cycle <= 64; ++cycle)
+        station.gateway.pass(Ert{now.microseconds + cycle * 15'625}, station.stages);
+    CHECK(station.latest("radiated")->status == Status::ok);
+    CHECK_FALSE(station.gateway.may_leave(Ert{now.microseconds + 2'000'000}));
+    CHECK(station.gateway.queued() == 0);
+}
+
 TEST_CASE("silence becomes unknown when the window has passed, never ok", "[gateway][R44]") {
     Station station;
     REQUIRE(station.send(request("NO_OP")).accepted);

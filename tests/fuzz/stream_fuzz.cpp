@@ -64,6 +64,10 @@ struct Ground {
         };
         services.read_run = [](std::uint64_t run, const auto& done) { done(Error{"no run " + std::to_string(run)}); };
         services.want_items = [](bool) {};
+        services.channel_id = [](const std::string& name) -> Result<std::uint32_t> {
+            if (name.empty()) return Error{"channel_names: an empty one"};
+            return static_cast<std::uint32_t>(name.size());
+        };
         return services;
     }
     void publish(std::size_t count, bool built) {

@@ -511,9 +511,13 @@ TEST_CASE("a subscription with a name that is no channel is refused by that name
     message.mutable_subscribe()->clear_channel_names();
     for (int i = 0; i < 4'097; ++i) message.mutable_subscribe()->add_channel_names("altitude_m");
     client.send(message);
+    message.mutable_subscribe()->clear_channel_names();
+    message.mutable_subscribe()->add_channel_names(std::string(60'000, 'x'));
+    client.send(message);
     venue.publish({samples_item(1, 5.0)});
     client.read_all();
-    REQUIRE(client.refusals.size() == 2);
+    REQUIRE(client.refusals.size() == 3);
+    CHECK(client.refusals[2] == "channel_names: one of 60000 octets is no name of a channel");
     CHECK(client.refusals[0] == "channel_names: there is no channel 'moon_phase'");
     CHECK_THAT(client.refusals[1], Catch::Contains("channel_names: 4097 of them, at most 4096"));
     REQUIRE(client.saw_exactly(1, 1));

@@ -62,11 +62,11 @@ export function neighbour(
 }
 
 /**
- * Whether the newest tone is the last one heard and no present report: the ground says that X-band is silent. Nothing
- * is of now without a connection (`lost`), nor after the end of a run.
+ * Whether the newest tone is the last one heard and no present report: the ground does not say that X-band is up.
+ * Nothing is of now without a connection (`lost`), nor after the end of a run.
  */
 export const isLast = (store: RunStore, cutoff: number, lost: boolean): boolean =>
-  (cutoff === Infinity && (lost || !store.going)) || toneSilence(store, cutoff)?.up === false;
+  (cutoff === Infinity && (lost || !store.going)) || toneSilence(store, cutoff)?.up !== true;
 
 /** The title: the present tone, or the last one heard and its time. */
 export function toneTitle(tone: NamedTone | undefined, last_e_s?: number): string {

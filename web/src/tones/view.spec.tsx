@@ -63,8 +63,13 @@ describe('tones', () => {
     const set = link({ link: 'x_band', up: false, reason: 'Earth has set', ert: '2012-219T04:59:00.0' });
     const whether = (...more: Parameters<typeof aStore>[0] & object) =>
       isLast(aStore([heard, ...more]), Infinity, false);
-    expect([whether(), whether(set)]).toEqual([false, true]);
-    expect(isLast(aStore([heard]), Infinity, true), 'without a connection').toBe(true);
+    const up = link({ link: 'x_band', up: true, reason: 'nominal', ert: '2012-219T04:58:00.0' });
+    expect([whether(up), whether(up, set), whether()], 'up, set, and without a word of the link').toEqual([
+      false,
+      true,
+      true,
+    ]);
+    expect(isLast(aStore([heard, up]), Infinity, true), 'without a connection').toBe(true);
     expect([toneTitle(last, -300), toneTitle(lost, -300)]).toEqual([
       'Last tone, E−5:00: 7 · Entry interface',
       'Last tone, E−5:00: not decoded',

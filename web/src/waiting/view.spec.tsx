@@ -197,7 +197,7 @@ describe('waiting for', () => {
     expect(now(firing({ timepoint: 1, name: 'sufr', firedSclk: 898 })).title).toBe('Waiting for parachute deploy');
     predictForTest(create(PredictionSchema, {}));
   });
-  it('shows a value beside its bound without a judgement of its own, with its age once it is stale, and no condition while nothing comes', () => {
+  it('judges no value beside its bound, gives its age once it is stale, and no condition while nothing comes', () => {
     const words = new Dictionary({
       ...aDictionary.reply,
       channels: [...aDictionary.channels, create(DictionaryChannelSchema, { id: 9, name: 'parachute_speed_mps' })],
