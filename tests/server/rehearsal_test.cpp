@@ -69,7 +69,7 @@ TEST_CASE("the scenarios in which a computer fails end on the ground", "[.long][
     }
 }
 
-TEST_CASE("\"do edl\" among another's 1400 commands is executed, each of its stages is known, and so are theirs",
+TEST_CASE("do edl among another's 1400 commands is executed, each of its stages is known, and so are theirs",
           "[release][rehearsal][bounds][R63]") {
     const double uhf_rate_bps = GENERATE(8000.0, 4000.0);
     const bool is_director = GENERATE(false, true);

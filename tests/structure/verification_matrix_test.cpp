@@ -150,4 +150,12 @@ TEST_CASE("no test's name has a colon so late that Catch2 cannot indent behind i
     }
 }
 
+TEST_CASE("no test's name has a quotation mark: in a file of names Catch2 takes the name as ending there",
+          "[structure]") {
+    for (const auto& [name, tags] : tags_in_sources()) {
+        INFO(name);
+        CHECK(name.find('"') == std::string::npos);
+    }
+}
+
 }  // namespace structure_verification_matrix_test
