@@ -36,6 +36,7 @@
 #include <optional>
 #include <spdlog/spdlog.h>
 #include <string>
+#include <string_view>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <thread>
@@ -568,11 +569,21 @@ void under_load(Channels channels, Beside beside) {
 
 }  // namespace
 
-int main() {
-    for (const auto& [channels, beside] : {std::pair{Channels::same, Beside::nothing},
-                                           {Channels::own, Beside::nothing},
-                                           {Channels::own, Beside::greedy_clients},
-                                           {Channels::own, Beside::every_list}}) {
+/// `load_bench [same|own|greedy|lists]...`: those loads alone; none named: all.
+int main(int count, char** arguments) {
+    struct Load {
+        std::string_view name;
+        Channels channels;
+        Beside beside;
+    };
+    constexpr std::array loads{
+        Load{"same", Channels::same, Beside::nothing}, Load{"own", Channels::own, Beside::nothing},
+        Load{"greedy", Channels::own, Beside::greedy_clients}, Load{"lists", Channels::own, Beside::every_list}};
+    const std::vector<std::string_view> wanted{arguments + 1, arguments + count};
+    for (const auto& name : wanted)
+        must(std::ranges::find(loads, name, &Load::name) != loads.end(), "a load: same, own, greedy or lists");
+    for (const auto& [name, channels, beside] : loads) {
+        if (!wanted.empty() && std::ranges::find(wanted, name) == wanted.end()) continue;
         // each in its own process, with its own heap
         const pid_t child = ::fork();
         must(child >= 0, "fork");
