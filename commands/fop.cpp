@@ -52,7 +52,10 @@ std::optional<Fop::Outgoing> Fop::next() {
         return control(std::move(command));
     }
     Item* const sequenced = next_sequenced();
-    if (!expedited_.empty() && (sequenced == nullptr || expedited_.front().order < sequenced->order)) {
+    const auto passes = [&](const Item& expedited) {
+        return sequenced == nullptr || sequenced->transmissions > 0 || expedited.order < sequenced->order;
+    };
+    if (!expedited_.empty() && passes(expedited_.front())) {
         Item item = std::move(expedited_.front());
         expedited_.pop_front();
         reports_.push_back({item.tag, Fate::radiated, 1});

@@ -156,6 +156,17 @@ TEST_CASE("a request to send again is followed once, though CLCWs under way repe
     CHECK(fop.next()->transmission == 3);
 }
 
+TEST_CASE("frames that are sent again hold up no expedited one", "[commands][R63]") {
+    Fop fop{settings(5)};
+    for (std::uint64_t tag = 0; tag < 3; ++tag) REQUIRE(fop.send(tag, data_of(tag), Service::sequence_controlled));
+    for (int i = 0; i < 3; ++i) REQUIRE(fop.next());
+    fop.repeat();
+    REQUIRE(fop.send(3, data_of(3), Service::expedited));
+    std::vector<std::uint64_t> tags;
+    while (const auto out = fop.next()) tags.push_back(out->tag.value());
+    CHECK(tags == std::vector<std::uint64_t>{3, 0, 1, 2});
+}
+
 TEST_CASE("what was never acknowledged is reported, and a restart goes on with what was never radiated", "[commands]") {
     Fop fop{{76, 1, 2, 2}};
     flight::Farm farm{{76, 1, 16}};
