@@ -141,12 +141,14 @@ std::optional<Api::TooMany> Api::count_commands(const Operator& who, std::size_t
 }
 
 void Api::post_command(const ApiRequest& call) {
+    // Counted unread: a body that says nothing takes time, too.
+    if (const auto many = count_commands(call.who, 1))
+        return audited(call, "command")(retry_response(429, many->reason, many->wait));
     v1::CommandRequest command;
     if (const auto fault = fault_of_json(call.request.body, command))
         return call.respond(fault->of_value ? refusal_response(unsent(command, fault->words), 422)
                                             : error_response(400, fault->words));
     const auto respond = command.dry_run() ? call.respond : audited(call, "command");
-    if (const auto many = count_commands(call.who, 1)) return respond(retry_response(429, many->reason, many->wait));
     if (const auto right = complete(call, command); !right) return respond(error_response(400, right.error()));
     if (const auto allowed = may_send(call.who, parts_.dictionary, parts_.rehearsals, command); !allowed)
         return respond(error_response(403, allowed.error()));
@@ -161,6 +163,8 @@ void Api::post_command(const ApiRequest& call) {
 }
 
 void Api::post_sequence(const ApiRequest& call) {
+    if (const auto many = count_commands(call.who, 1))
+        return audited(call, "command")(retry_response(429, many->reason, many->wait));
     v1::CommandSequence sequence;
     if (const auto fault = fault_of_json(call.request.body, sequence)) {
         v1::SequenceReply reply;
@@ -171,7 +175,7 @@ void Api::post_sequence(const ApiRequest& call) {
     if (sequence.commands().empty() || sequence.commands_size() > sequence_max)
         return respond(error_response(
             400, fmt::format("commands: 1 to {} are wanted, here are {}", sequence_max, sequence.commands_size())));
-    if (const auto many = count_commands(call.who, static_cast<std::size_t>(sequence.commands_size())))
+    if (const auto many = count_commands(call.who, static_cast<std::size_t>(sequence.commands_size() - 1)))
         return respond(retry_response(429, many->reason, many->wait));
     std::string malformed;
     for (int i = 0; i < sequence.commands_size(); ++i) {

@@ -3,6 +3,7 @@
 #include "aeolis/v1/lists.pb.h"
 #include "aeolis/v1/run.pb.h"
 #include "server/access/this_user.hpp"
+#include "server/api/command_rates.hpp"
 #include "server/archive/items.hpp"
 #include "server/base/json.hpp"
 #include "tests/server/archive/faulty_disk.hpp"
@@ -307,6 +308,16 @@ TEST_CASE(
         CHECK(reply.status == row.status);
         CHECK_THAT(reply.body, Catch::Contains(row.says));
     }
+}
+
+TEST_CASE("bodies that are no command count as commands, too, until a client must wait", "[http][bounds][R63]") {
+    RunningServer idle;
+    unsigned status = 400;
+    for (int i = 0; i < 2 * static_cast<int>(server::CommandRates::at_once) && status == 400; ++i)
+        status = web_request(idle.port(), "POST",
+                             i % 2 == 0 ? "/api/v1/runs/latest/commands" : "/api/v1/runs/latest/sequences", "no JSON")
+                     .status;
+    CHECK(status == 429);
 }
 
 TEST_CASE("a refused command, or command file, is a problem that has the members of its reply", "[http][R62]") {
