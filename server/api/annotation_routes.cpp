@@ -21,15 +21,6 @@ std::function<void(Result<PipelineThread::Annotated>)> added(const Respond& resp
     };
 }
 
-/// Reads the message in the request's body, signed: with accounts, nobody can write in another's name. Returns the
-/// response when it cannot be read.
-template <typename Request>
-std::optional<HttpResponse> read_signed(const ApiRequest& call, Request& wanted) {
-    auto unreadable = read_body(call.request.body, wanted);
-    if (!unreadable && call.who.accounts) wanted.set_by(call.who.user);
-    return unreadable;
-}
-
 }  // namespace
 
 void Api::annotate(const ApiRequest& call, Annotating annotating) {

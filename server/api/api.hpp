@@ -6,6 +6,7 @@
 #include "server/api/command_rates.hpp"
 #include "server/api/http_message.hpp"
 #include "server/api/list_response.hpp"
+#include "server/api/procedure_library.hpp"
 #include "server/api/query_threads.hpp"
 #include "server/api/static_files.hpp"
 #include "server/api/stream_hub.hpp"
@@ -79,6 +80,7 @@ class Api {
         std::string follows{};  ///< why this server changes no run, in a sentence; empty: it is the origin of its runs
         /// Gives a request that is for the origin to it; null: it is refused with `follows`.
         std::function<void(const ApiRequest&)> to_origin{};
+        ProcedureLibrary procedures{};
     };
     explicit Api(Parts parts);
 
@@ -151,6 +153,15 @@ class Api {
     using Annotated = std::variant<archive::Annotation, HttpResponse>;  ///< the latter says why not
     using Annotating = std::function<Annotated(archive::Reader&, archive::RunId, Ert now)>;
     void annotate(const ApiRequest& call, Annotating annotating);
+    // procedure_routes.cpp
+    void list_procedures(const ApiRequest& call);
+    void get_procedure(const ApiRequest& call);
+    void begin_procedure(const ApiRequest& call);
+    void post_procedure_act(const ApiRequest& call);
+    void list_procedure_acts(const ApiRequest& call);
+    using Acted = std::variant<archive::ProcedureActRecord, HttpResponse>;  ///< the latter says why not
+    using Acting = std::function<Acted(archive::Reader&, archive::RunId, Ert now)>;
+    void act(const ApiRequest& call, Acting acting);
     // layout_routes.cpp
     void list_layouts(const ApiRequest& call);
     void put_layout(const ApiRequest& call);
@@ -243,6 +254,13 @@ HttpResponse refusal_response(Reply reply, unsigned status) {
 /// Reads a request's body. Returns the response when it cannot: 400 when it is no such message, 422 when a value in it
 /// makes no sense.
 std::optional<HttpResponse> read_body(const std::string& body, google::protobuf::Message& message);
+/// The same, signed: with accounts, nobody can write in another's name.
+template <typename Request>
+std::optional<HttpResponse> read_signed(const ApiRequest& call, Request& wanted) {
+    auto unreadable = read_body(call.request.body, wanted);
+    if (!unreadable && call.who.accounts) wanted.set_by(call.who.user);
+    return unreadable;
+}
 
 /// The client that a request counts for: an account, without accounts a browser, else the network it comes from.
 std::string client_of(const Operator& who);

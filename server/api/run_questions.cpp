@@ -587,6 +587,19 @@ HttpResponse state(const AnswerContext& context, archive::Reader& reader, archiv
     return response;
 }
 
+HttpResponse procedures_of_run(const AnswerContext&, archive::Reader& reader, archive::RunId run,
+                               const QueryText& query) {
+    const auto at = instant_of(query, "at", reader, run);
+    if (!at) return error_response(400, at.error());
+    const auto state = reader.run(run);
+    if (!state) return error_response(400, state.error());
+    auto items = reader.procedures(run, *at ? std::optional{archive::ert_of(*state, **at)} : std::nullopt);
+    if (!items) return error_response(400, items.error());
+    v1::RunProcedureList list;
+    for (auto& item : *items) *list.add_procedures() = std::move(item);
+    return answer(Result<v1::RunProcedureList>{std::move(list)});
+}
+
 const std::array questions{
     RunRoute{"", {}, {}, run_itself},
     RunRoute{"channels",
@@ -606,6 +619,7 @@ const std::array questions{
     RunRoute{"commands", {"text", "from", "to", "after", "limit", "order", "format"}, list_formats, commands},
     RunRoute{"alarms", {"state", "after", "limit", "order", "format"}, list_formats, alarms},
     RunRoute{"notes", {"text", "after", "limit", "order", "format"}, list_formats, notes},
+    RunRoute{"procedures", {"at"}, {}, procedures_of_run},
     RunRoute{"interventions", {"after", "limit", "order", "format"}, list_formats, interventions, true},
     RunRoute{"plan", {}, {}, plan, true},
     RunRoute{"preconditions", {"command", "at"}, {}, preconditions},

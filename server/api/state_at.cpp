@@ -83,7 +83,8 @@ Result<v1::StateAt> state_at(archive::Reader& reader, archive::RunId run, const 
     const auto cut = at ? Cut{at, archive::ert_of(*state, *at)} : Cut{};
     Stand stand;
     for (archive::Sequence after = 0;;) {
-        auto page = reader.items(run, after, archive::items_page_max, {.samples = false, .packets = false});
+        auto page = reader.items(run, after, archive::items_page_max,
+                                 {.samples = false, .packets = false, .procedures = false});
         if (!page) return page.error();
         for (const auto& item : page->items) stand.take(item, cut);
         if (!page->more) break;
@@ -114,6 +115,9 @@ Result<v1::StateAt> state_at(archive::Reader& reader, archive::RunId run, const 
     answer.set_commands_left_out(stand.commands_left_out.size());
     for (auto& [name, item] : stand.alarms)
         if (stands(item)) *answer.add_alarms() = std::move(item);
+    auto procedures = reader.procedures(run, cut.on_earth);
+    if (!procedures) return procedures.error();
+    for (auto& item : *procedures) *answer.add_procedures() = std::move(item);
     if (stand.tone) *answer.mutable_tone() = std::move(*stand.tone);
     if (stand.situation) *answer.mutable_situation() = std::move(*stand.situation);
     return answer;

@@ -23,6 +23,21 @@ void write_clocks(v1::Clocks& clocks) {
     clocks.set_latest_useful(clocks.has_latest_useful_us() ? text_of(clocks.latest_useful_us()) : "");
 }
 
+void write_status(v1::ProcedureStatus& status) {
+    status.set_begun(text_of(status.begun_us()));
+    for (auto& step : *status.mutable_steps()) {
+        if (step.has_limit_us()) step.set_limit(text_of(step.limit_us()));
+        if (step.has_since_us()) step.set_since(text_of(step.since_us()));
+        if (step.has_over_us()) step.set_over(text_of(step.over_us()));
+        for (auto& signature : *step.mutable_signatures()) signature.set_at(text_of(signature.at_us()));
+    }
+    for (auto& watchdog : *status.mutable_watchdogs()) {
+        if (watchdog.has_tripped_us()) watchdog.set_tripped(text_of(watchdog.tripped_us()));
+        if (watchdog.has_acknowledged())
+            watchdog.mutable_acknowledged()->set_at(text_of(watchdog.acknowledged().at_us()));
+    }
+}
+
 void write_item(v1::Item& item) {
     const auto ert = text_of(item.ert_us());
     switch (item.item_case()) {
@@ -53,6 +68,8 @@ void write_item(v1::Item& item) {
         break;
     }
     case v1::Item::kNote: item.mutable_note()->set_at(ert); break;
+    case v1::Item::kProcedureAct: item.mutable_procedure_act()->set_at(ert); break;
+    case v1::Item::kProcedure: write_status(*item.mutable_procedure()); break;
     case v1::Item::kSamples:
     case v1::Item::kTimepoint:
     case v1::Item::kExplanation:

@@ -80,6 +80,11 @@ struct EnumWords<Outcome> {
     static const char* of(Outcome outcome) { return name_of(outcome); }
 };
 template <>
+struct EnumWords<ProcedureActKind> {
+    static constexpr std::size_t count = procedure_act_kinds;
+    static const char* of(ProcedureActKind kind) { return name_of(kind); }
+};
+template <>
 struct EnumWords<CarrierLock> {
     static constexpr std::size_t count = 4;
     static const char* of(CarrierLock lock) { return to_text(lock); }
@@ -323,6 +328,39 @@ struct ItemTable<NoteRecord> {
     }
 };
 
+template <>
+struct ItemTable<ProcedureActRecord> {
+    static constexpr char name[] = "procedure_acts";
+    static constexpr bool derived = false;
+    static constexpr auto of_batch = &Batch::procedure_acts;
+    static void columns(auto& record, auto&& visit) {
+        visit("number", record.number);
+        visit("kind", record.kind, Column::searched);
+        visit("procedure", record.procedure, Column::searched);
+        visit("step", record.step, Column::searched);
+        visit("position", record.position, Column::searched);
+        visit("author", record.by, Column::searched);
+        visit("reason", record.reason, Column::searched);
+        visit("choice", record.choice);
+        visit("command", record.command);
+        visit("text", record.text, Column::optional);
+    }
+};
+
+template <>
+struct ItemTable<ProcedureStatusRecord> {
+    static constexpr char name[] = "procedure_statuses";
+    static constexpr bool derived = false;
+    static constexpr auto of_batch = &Batch::procedure_statuses;
+    static void columns(auto& record, auto&& visit) {
+        visit("number", record.number);
+        visit("procedure", record.procedure);
+        visit("part", record.part);
+        visit("held", record.held);
+        visit("status", record.status);
+    }
+};
+
 template <typename Record>
 concept HasParts = requires(Record& record) { ItemTable<Record>::parts(record); };
 template <HasParts Record>
@@ -336,9 +374,10 @@ struct ItemKind {
 
 /// All kinds that have a table. Samples have none: they are decommutated again from their packets.
 template <template <typename> typename Of>
-using OfItemKinds = std::tuple<Of<PacketRecord>, Of<EventRecord>, Of<ToneRecord>, Of<StageRecord>, Of<FiringRecord>,
-                               Of<ExplanationRecord>, Of<LinkRecord>, Of<AlarmRecord>, Of<StalenessRecord>,
-                               Of<SituationRecord>, Of<AlarmActionRecord>, Of<NoteRecord>>;
+using OfItemKinds =
+    std::tuple<Of<PacketRecord>, Of<EventRecord>, Of<ToneRecord>, Of<StageRecord>, Of<FiringRecord>,
+               Of<ExplanationRecord>, Of<LinkRecord>, Of<AlarmRecord>, Of<StalenessRecord>, Of<SituationRecord>,
+               Of<AlarmActionRecord>, Of<NoteRecord>, Of<ProcedureActRecord>, Of<ProcedureStatusRecord>>;
 
 /// Calls act(ItemKind<Record>) for each kind.
 void for_item_kinds(auto act) {

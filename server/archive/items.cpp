@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/archive/items.hpp"
 
+#include "server/archive/procedure_status.hpp"
+
 #include <cmath>
 #include <limits>
 
@@ -226,6 +228,28 @@ v1::Item to_item(const NoteRecord& record) {
     note.set_by(record.by);
     note.set_written(record.written);
     if (record.sclk_s) note.set_sclk(*record.sclk_s);
+    return item;
+}
+
+v1::Item to_item(const ProcedureActRecord& record) {
+    v1::Item item = item_with(record);
+    auto& act = *item.mutable_procedure_act();
+    act.set_number(record.number);
+    act.set_kind(wire<v1::ProcedureAct::Kind>(record.kind));
+    act.set_procedure(record.procedure);
+    act.set_text(record.text);
+    act.set_step(record.step);
+    act.set_position(record.position);
+    act.set_by(record.by);
+    act.set_reason(record.reason);
+    if (record.choice) act.set_choice(*record.choice);
+    act.set_command(record.command);
+    return item;
+}
+
+v1::Item to_item(const ProcedureStatusRecord& record) {
+    v1::Item item = item_with(record);
+    *item.mutable_procedure() = unpacked_status(record.status);
     return item;
 }
 

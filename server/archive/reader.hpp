@@ -223,6 +223,7 @@ class Reader {
     struct ItemKinds {
         bool samples = true;
         bool packets = true;
+        bool procedures = true;             ///< their statuses
         std::size_t octets_max = SIZE_MAX;  ///< of packets and samples, encoded, after which a page ends
     };
     /// The items after `after`, in order, of all kinds, as they were published.
@@ -237,6 +238,8 @@ class Reader {
     Result<FlownRun> cut_off(RunId run);
     /// What people added to a run, in the order of numbers.
     Result<std::vector<Annotation>> annotations(RunId run);
+    /// Those of them that are acts on procedures.
+    Result<std::vector<ProcedureActRecord>> all_procedure_acts(RunId run);
     /// The scenario of a run of this dictionary, as Protobuf text. The Error says why there is none.
     Result<std::string> scenario_text(RunId run);
 
@@ -301,6 +304,10 @@ class Reader {
     /// When the run's newest packet was received.
     Result<Ert> newest_ert(RunId run);
     Result<v1::NoteList> notes(RunId run, const NoteQuery& query);
+    /// The newest status of each procedure of the run, by number, as known at `at` by the clock on Earth.
+    Result<std::vector<v1::Item>> procedures(RunId run, std::optional<Ert> at = {});
+    /// What people did with a procedure of the run, oldest first; empty: it has none of the number.
+    Result<std::vector<v1::Item>> procedure_acts(RunId run, std::uint32_t number);
     /// The interventions of instructors in the run. Those being rehearsed see them only once the run is over.
     Result<v1::InterventionList> interventions(RunId run, const InterventionQuery& query = {});
     /// The instructor's plan that the run began with; no text: it has none.

@@ -136,6 +136,8 @@ Result<void> collect_all(Reader::State& reader, Page& page, Reader::ItemKinds ki
     auto done = try_item_kinds([&]<typename Record>(ItemKind<Record>) {
         if constexpr (std::is_same_v<Record, PacketRecord>)
             return kinds.packets || kinds.samples ? collect_packets(reader, instant->run, page, kinds) : Result<void>{};
+        else if constexpr (std::is_same_v<Record, ProcedureStatusRecord>)
+            return kinds.procedures ? collect<Record>(reader, instant->run, page) : Result<void>{};
         else
             return collect<Record>(reader, instant->run, page);
     });

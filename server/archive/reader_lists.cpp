@@ -388,4 +388,65 @@ Result<v1::RecordingSummary> Reader::recording(RunId run) {
     return summary;
 }
 
+// ---- procedures ------------------------------------------------------------------------------------------------------
+
+namespace {
+
+/// Reads all rows of a statement whose parameters are bound.
+template <typename Record>
+Result<std::vector<v1::Item>> all_items(Reader::State& reader, sqlite::Statement& rows) {
+    std::vector<v1::Item> items;
+    for (;;) {
+        auto found = rows.step();
+        if (!found) return found.error();
+        if (!*found) return items;
+        auto item = reader.item<Record>(rows);
+        if (!item) return item.error();
+        items.push_back(std::move(*item));
+    }
+}
+
+}  // namespace
+
+Result<std::vector<v1::Item>> Reader::procedures(RunId run, std::optional<Ert> at) {
+    static const std::string sql =
+        select_sql<ProcedureStatusRecord>("key IN (SELECT max(key) FROM procedure_statuses WHERE key BETWEEN ?1 AND ?2"
+                                          " AND ert_us <= ?4 GROUP BY number)");
+    auto rows = state_->query(sql.c_str());
+    if (!rows) return rows.error();
+    (*rows)
+        ->bind(1, item_key(run, 0))
+        .bind(2, item_key(run, sequence_max))
+        .bind(3, std::int64_t{-1})
+        .bind(4, at ? at->microseconds : std::numeric_limits<std::int64_t>::max());
+    auto items = all_items<ProcedureStatusRecord>(*state_, **rows);
+    if (items) std::ranges::sort(*items, {}, [](const v1::Item& item) { return item.procedure().number(); });
+    return items;
+}
+
+Result<std::vector<ProcedureActRecord>> Reader::all_procedure_acts(RunId run) {
+    auto rows = state_->query(rows_sql<ProcedureActRecord>());
+    if (!rows) return rows.error();
+    (*rows)->bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max)).bind(3, std::int64_t{-1});
+    std::vector<ProcedureActRecord> acts;
+    for (;;) {
+        auto found = (*rows)->step();
+        if (!found) return found.error();
+        if (!*found) return acts;
+        acts.push_back(read_row<ProcedureActRecord>(**rows));
+    }
+}
+
+Result<std::vector<v1::Item>> Reader::procedure_acts(RunId run, std::uint32_t number) {
+    static const std::string sql = select_sql<ProcedureActRecord>("key BETWEEN ?1 AND ?2 AND number = ?4");
+    auto rows = state_->query(sql.c_str());
+    if (!rows) return rows.error();
+    (*rows)
+        ->bind(1, item_key(run, 0))
+        .bind(2, item_key(run, sequence_max))
+        .bind(3, std::int64_t{-1})
+        .bind(4, std::int64_t{number});
+    return all_items<ProcedureActRecord>(*state_, **rows);
+}
+
 }  // namespace aeolis::archive

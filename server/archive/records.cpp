@@ -10,6 +10,8 @@
 namespace aeolis::archive {
 
 namespace {
+constexpr std::array<const char*, procedure_act_kinds> act_names{"begin", "tick", "sign",    "choose",      "skip",
+                                                                 "sent",  "hold", "release", "acknowledge", "stop"};
 constexpr std::array verdict_names{"unknown", "completed", "verified", "unverified", "no_operation", "refused"};
 }  // namespace
 
@@ -21,6 +23,16 @@ FiringVerdict firing_verdict(std::string_view word) {
     const auto found = std::ranges::find(verdict_names, word);
     return found == verdict_names.end() ? FiringVerdict::unknown
                                         : static_cast<FiringVerdict>(found - verdict_names.begin());
+}
+
+const char* name_of(ProcedureActKind kind) {
+    return act_names[static_cast<std::size_t>(kind)];
+}
+
+std::optional<ProcedureActKind> procedure_act_kind(std::string_view name) {
+    const auto found = std::ranges::find(act_names, name);
+    if (found == act_names.end()) return std::nullopt;
+    return static_cast<ProcedureActKind>(found - act_names.begin());
 }
 
 const char* name_of(Outcome outcome) {
@@ -42,10 +54,9 @@ void Extremes::add(const Extremes& later) {
 }
 
 void Batch::add(Annotation annotation) {
-    if (auto* note = std::get_if<NoteRecord>(&annotation))
-        notes.push_back(std::move(*note));
-    else
-        alarm_actions.push_back(std::move(std::get<AlarmActionRecord>(annotation)));
+    std::visit(
+        [this]<typename Record>(Record& record) { (this->*ItemTable<Record>::of_batch).push_back(std::move(record)); },
+        annotation);
 }
 
 void Batch::clear() {

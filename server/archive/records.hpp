@@ -198,6 +198,31 @@ struct NoteRecord : ItemRecord {
     std::optional<double> sclk_s;
 };
 
+enum class ProcedureActKind : std::uint8_t { begin, tick, sign, choose, skip, sent, hold, release, acknowledge, stop };
+inline constexpr std::size_t procedure_act_kinds = 10;
+/// Its name in the API and in the archive.
+const char* name_of(ProcedureActKind kind);
+std::optional<ProcedureActKind> procedure_act_kind(std::string_view name);
+
+/// What a person did with a procedure of the run.
+struct ProcedureActRecord : ItemRecord {
+    std::uint32_t number = 0;  ///< of the procedure in the run, from 1
+    ProcedureActKind kind{};
+    std::string procedure;  ///< its id
+    std::string text;       ///< of `begin`: the file that is followed; else empty
+    std::string step;       ///< or watchdog; empty: the whole procedure
+    std::string position, by, reason;
+    std::optional<std::uint32_t> choice;  ///< of `choose`
+    std::uint64_t command = 0;            ///< of `sent`
+};
+
+/// A procedure of the run as it stands, from this item to the next of its number.
+struct ProcedureStatusRecord : ItemRecord {
+    std::uint32_t number = 0;
+    std::string procedure, part, held;
+    std::vector<std::uint8_t> status;  ///< all of it, as packed() of procedure_status.hpp makes it
+};
+
 inline constexpr std::size_t segment_samples = 1024;  ///< samples in a full segment; limits.md
 
 /// Samples of one packet and source, column by column. Written once, when full or at the end of the run: only the last
@@ -311,7 +336,7 @@ struct FlownRun {
 };
 
 /// A person's addition to a run, in progress or over.
-using Annotation = std::variant<NoteRecord, AlarmActionRecord>;
+using Annotation = std::variant<NoteRecord, AlarmActionRecord, ProcedureActRecord>;
 
 /// The items and rows that become durable together.
 struct Batch {
@@ -331,6 +356,8 @@ struct Batch {
     std::vector<SituationRecord> situations;
     std::vector<AlarmActionRecord> alarm_actions;
     std::vector<NoteRecord> notes;
+    std::vector<ProcedureActRecord> procedure_acts;
+    std::vector<ProcedureStatusRecord> procedure_statuses;
     std::vector<SegmentRecord> segments;
     std::vector<RequestRecord> requests;
     std::vector<PyramidRecord> pyramid;

@@ -186,6 +186,11 @@ CREATE VIEW shift_log AS
            strftime('%Y-%jT%H:%M:%f', n.ert_us / 1e6 + 946728000, 'unixepoch') AS at, n.written, n.author, n.sclk,
            n.sclk - r.entry_sclk AS e_s, n.text
     FROM notes n JOIN runs r ON r.run = n.key >> 40;
+CREATE VIEW procedure_log AS
+    SELECT a.key >> 40 AS run, a.key & 0xFFFFFFFFFF AS seq,
+           strftime('%Y-%jT%H:%M:%f', a.ert_us / 1e6 + 946728000, 'unixepoch') AS at, a.number, a.procedure, a.kind,
+           a.step, a.position, a.author, a.reason, a.choice, nullif(a.command, 0) AS command
+    FROM procedure_acts a;
 CREATE VIEW clock_log AS
     SELECT r.run, r.scenario, r.clock_version AS version, r.correlation_sclk AS sclk,
            strftime('%Y-%jT%H:%M:%f', r.correlation_scet_us / 1e6 + 946728000, 'unixepoch') AS scet,
@@ -270,6 +275,11 @@ Error not_ours(const sqlite::Database& database) {
     return {database.file() + " is not an Aeolis archive"};
 }
 
+Error before_release(const sqlite::Database& database) {
+    return {database.file() + " was written before the first release, in another layout: open it with the Aeolis "
+                              "that wrote it, or name another file"};
+}
+
 constexpr std::int64_t before_release_id =
     0x41454F4C;  ///< "AEOL": archives made before the first release, of other tables
 
@@ -286,12 +296,13 @@ Result<bool> is_empty(sqlite::Database& database) {
     if (!version) return version.error();
     if (!tables) return tables.error();
     if (*id == 0 && *version == 0 && *tables == 0) return true;
-    if (*id == before_release_id)
-        return Error{database.file() +
-                     " was written before the first release, in another layout: open it with the Aeolis "
-                     "that wrote it, or name another file"};
+    if (*id == before_release_id) return before_release(database);
     if (*id != application_id || *version < 1) return not_ours(database);
-    if (*version == schema_version) return false;
+    if (*version == schema_version) {
+        const auto whole = database.integer_of("SELECT count(*) FROM sqlite_schema WHERE name = 'procedure_acts'");
+        if (!whole) return whole.error();
+        return *whole != 0 ? Result<bool>{false} : before_release(database);
+    }
     return Error{database.file() + " has archive schema " + std::to_string(*version) + ", this program has " +
                  std::to_string(schema_version) + ": open it with the Aeolis that wrote it, or name another file"};
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "server/api/procedure_library.hpp"
 #include "server/base/json_object.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/options.hpp"
 #include "server/cli/shipped_paths.hpp"
 #include "server/instruction/plan_library.hpp"
-#include "server/procedures/procedure_reader.hpp"
 #include "server/procedures/procedure_text.hpp"
 
 #include <cstdio>
@@ -23,16 +23,6 @@ struct ProcedureOptions {
     Files files;
     bool json = false;
 };
-
-/// Reads a file, whose watchdogs may name the procedures that lie beside it. An Error when there is no such file.
-Result<ReadProcedure> procedure_of(const std::filesystem::path& file, const dictionary::Dictionary& dictionary) {
-    const auto text = instruction::text_of_file(file);
-    if (!text) return text.error();
-    std::vector<std::string> beside;
-    const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path{"."};
-    for (const auto& other : instruction::yaml_files_in(folder)) beside.push_back(other.stem().string());
-    return procedures::read_procedure(*text, file.string(), dictionary, beside);
-}
 
 /// "1 step", "2 steps".
 std::string counted(std::size_t count, const char* what) {
@@ -72,8 +62,9 @@ int procedure_check(const ProcedureOptions& options) {
     std::vector<std::string> reports;
     reports.reserve(files.size());
     for (const auto& file : files) {
-        const auto read = procedure_of(file, *dictionary);
-        if (!read) return failed("procedure check: " + read.error().message, 2);
+        const auto found = read_procedure_file(file, file.string(), *dictionary);
+        if (!found) return failed("procedure check: " + found.error().message, 2);
+        const ReadProcedure* read = &found->read;
         sound = sound && read->procedure.has_value();
         if (options.json) {
             reports.push_back(procedure_json(file, *read));
@@ -96,8 +87,9 @@ int procedure_check(const ProcedureOptions& options) {
 int procedure_print(const ProcedureOptions& options) {
     const auto dictionary = loaded_dictionary(options.dictionary);
     if (!dictionary) return 1;
-    const auto read = procedure_of(options.files.front(), *dictionary);
-    if (!read) return failed("procedure print: " + read.error().message, 2);
+    const auto found = read_procedure_file(options.files.front(), options.files.front().string(), *dictionary);
+    if (!found) return failed("procedure print: " + found.error().message, 2);
+    const ReadProcedure* read = &found->read;
     for (const TextFinding& finding : read->findings) fmt::print(stderr, "{}\n", finding.text());
     if (!read->procedure) return 1;
     fmt::print("{}", procedures::printed(*read->procedure, *dictionary));

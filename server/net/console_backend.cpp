@@ -136,7 +136,8 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
                                                                       : [self] { return self->replication(); },
         backend->follows_,
         backend->follower_seed_.empty() ? std::function<void(const ApiRequest&)>{}
-                                        : [self](const ApiRequest& call) { self->ask_origin(call); }});
+                                        : [self](const ApiRequest& call) { self->ask_origin(call); },
+        ProcedureLibrary{chosen.dictionary.empty() ? chosen.dictionary : chosen.dictionary / "procedures"}});
     backend->check_audit_head();
     backend->adopt_newest_run();
     backend->note_resets();

@@ -2,10 +2,13 @@
 #include "server/pipeline/annotations.hpp"
 
 #include "server/base/wall_clock.hpp"
+#include "server/procedures/execution.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <vector>
 
 namespace aeolis::server {
 namespace {
@@ -22,7 +25,57 @@ Result<void> check_author(const std::string& by) {
     return check_text("by", by, author_octets_max);
 }
 
+/// What all acts on procedures have.
+Result<archive::ProcedureActRecord> act_by(const std::string& position, const std::string& by, Ert now) {
+    if (auto author = check_author(by); !author) return author.error();
+    if (auto fits = check_text("by", by, procedures::person_octets_max); !fits) return fits.error();
+    if (!procedures::position_named(position)) {
+        std::vector<std::string_view> known;
+        for (const auto each : procedures::positions) known.push_back(procedures::name_of(each));
+        return Error{fmt::format("position: there is no '{}'; positions are {}", position, fmt::join(known, ", "))};
+    }
+    archive::ProcedureActRecord act;
+    act.position = position;
+    act.by = by;
+    act.ert = now;
+    return act;
+}
+
 }  // namespace
+
+Result<archive::ProcedureActRecord> procedure_act_of(const v1::ProcedureBeginRequest& request, std::string text,
+                                                     const std::string& by, Ert now) {
+    auto act = act_by(request.position(), by, now);
+    if (!act) return act;
+    act->kind = archive::ProcedureActKind::begin;
+    act->procedure = request.procedure();
+    act->text = std::move(text);
+    return act;
+}
+
+Result<archive::ProcedureActRecord> procedure_act_of(const v1::ProcedureActRequest& request, std::uint32_t number,
+                                                     const std::string& by, Ert now) {
+    using archive::ProcedureActKind;
+    auto act = act_by(request.position(), by, now);
+    if (!act) return act;
+    const auto kind = archive::procedure_act_kind(request.kind());
+    if (!kind || *kind == ProcedureActKind::begin)
+        return Error{fmt::format("kind: '{}' is none of tick, sign, choose, skip, sent, hold, release, acknowledge, "
+                                 "stop",
+                                 request.kind())};
+    if (auto step = check_text("step", request.step(), author_octets_max); !step) return step.error();
+    if (auto reason = check_text("reason", request.reason(), procedures::reason_octets_max); !reason)
+        return reason.error();
+    if (*kind == ProcedureActKind::sent && request.command() == 0)
+        return Error{"command: which one was sent? Its number in the run is wanted"};
+    act->number = number;
+    act->kind = *kind;
+    act->step = request.step();
+    act->reason = request.reason();
+    if (*kind == ProcedureActKind::choose) act->choice = request.choice();
+    if (*kind == ProcedureActKind::sent) act->command = request.command();
+    return act;
+}
 
 Result<void> check_note(const std::string& text, const std::string& by) {
     if (auto author = check_author(by); !author) return author;

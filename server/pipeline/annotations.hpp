@@ -2,6 +2,7 @@
 #pragma once
 
 #include "aeolis/v1/alarms.pb.h"
+#include "aeolis/v1/procedures.pb.h"
 #include "aeolis/v1/run.pb.h"
 #include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"
@@ -11,7 +12,7 @@
 #include <span>
 #include <string>
 
-// Checks what people add to a run: notes and actions on alarms.
+// Checks what people add to a run: notes, actions on alarms and acts on procedures.
 namespace aeolis::server {
 
 inline constexpr std::size_t note_octets_max = 4'000;  ///< a page of text
@@ -30,5 +31,14 @@ Result<archive::NoteRecord> note_of(const v1::NoteRequest& request, const std::s
 Result<archive::AlarmActionRecord> alarm_action_of(const v1::AlarmRequest& request,
                                                    const dictionary::Dictionary& dictionary,
                                                    std::span<const std::string> links, const std::string& by, Ert now);
+
+/// Makes the record of the act that begins a procedure.
+/// @param text  the procedure's file
+Result<archive::ProcedureActRecord> procedure_act_of(const v1::ProcedureBeginRequest& request, std::string text,
+                                                     const std::string& by, Ert now);
+/// Makes the record of an act on a procedure. Whether it has a place now is another question.
+/// @param number  of the procedure in the run
+Result<archive::ProcedureActRecord> procedure_act_of(const v1::ProcedureActRequest& request, std::uint32_t number,
+                                                     const std::string& by, Ert now);
 
 }  // namespace aeolis::server

@@ -37,6 +37,12 @@ class Numbering {
         return batch.last_seq;
     }
     Sequence last() const { return next_ - 1; }
+    /// Whether all numbers before this one were given out, or are those of stored items.
+    bool has_come_to(Sequence seq) const {
+        Sequence next = next_;
+        for (std::size_t i = passed_; i < taken_.size() && taken_[i] == next; ++i) ++next;
+        return seq < next;
+    }
     /// From here on all numbers are free.
     void forget_taken() { taken_.clear(), passed_ = 0; }
 

@@ -6,6 +6,7 @@
 #include "server/archive/packet_columns.hpp"
 #include "server/base/wall_clock.hpp"
 #include "server/pipeline/packet_intake.hpp"
+#include "server/pipeline/procedure_feed.hpp"
 #include "server/pipeline/situation_feed.hpp"
 #include "telemetry/staleness.hpp"
 #include "telemetry/station/station_packets.hpp"
@@ -14,6 +15,28 @@
 #include <map>
 
 namespace aeolis::pipeline {
+
+namespace {
+
+/// How far behind its own time an act of the other run may be taken again: an act's time is within a second of the
+/// newest item's, and items of a delivery are not quite in the order of their times.
+constexpr std::int64_t act_slack_us = 10'000'000;
+
+Ert time_of(const telemetry::ReceivedTone& tone) {
+    return tone.end;
+}
+Ert time_of(const auto& received) {
+    return received.ert;
+}
+
+std::vector<archive::ProcedureActRecord> acts_among(std::span<const archive::Annotation> annotations) {
+    std::vector<archive::ProcedureActRecord> acts;
+    for (const auto& annotation : annotations)
+        if (const auto* act = std::get_if<archive::ProcedureActRecord>(&annotation)) acts.push_back(*act);
+    return acts;
+}
+
+}  // namespace
 
 struct Pipeline::State {
     State(archive::Archive& archive_in, const dictionary::Dictionary& dictionary_in,
@@ -25,20 +48,23 @@ struct Pipeline::State {
         Run(RunId id_in, archive::RunStart start_in, const State& state, Numbering numbering_in)
             : id(id_in), start(std::move(start_in)), numbering(std::move(numbering_in)),
               intake(state.dictionary, state.columns, state.other), staleness(state.dictionary),
-              situation(state.dictionary, start) {}
+              situation(state.dictionary, start), procedures(state.dictionary, state.columns, start) {}
         RunId id;
         archive::RunStart start;
         Numbering numbering;
         PacketIntake intake;
         telemetry::StalenessMonitor staleness;
         SituationFeed situation;
+        ProcedureFeed procedures;
         archive::Batch pending;
         double progress = 0.0, durable_progress = 0.0;  ///< of the recording
         Sequence last_durable = 0;
-        Sequence repeat_until = 0;       ///< items up to here are already durable
-        Compare compare;                 ///< not null while items are repeated
-        std::optional<Repeated> origin;  ///< until the fork
-        std::size_t annotated = 0;       ///< of the origin's annotations
+        Sequence repeat_until = 0;                      ///< items up to here are already durable
+        Compare compare;                                ///< not null while items are repeated
+        std::optional<Repeated> origin;                 ///< until the fork
+        std::size_t annotated = 0;                      ///< of the origin's annotations
+        std::vector<archive::ProcedureActRecord> acts;  ///< to be taken again, in their order
+        std::size_t acted = 0;                          ///< of them
         std::optional<Error> differs;
         struct RawLink {
             std::uint64_t received = 0, stored = 0;  ///< octets; the first `stored` are durable
@@ -71,7 +97,8 @@ struct Pipeline::State {
         }
     };
 
-    Result<void> room();
+    Result<void> room(std::optional<Ert> now = {});
+    void repeat_acts(std::optional<Ert> now);
     std::size_t pending_octets() const;
     void take(const telemetry::ReceivedOctets& piece);
     void take(const telemetry::ReceivedPacket& packet);
@@ -80,7 +107,7 @@ struct Pipeline::State {
     void add(std::span<const telemetry::StalenessChange> changes, Ert ert);
     template <typename Received>
     Result<void> accept(const Received& received) {
-        if (auto room = this->room(); !room) return room;
+        if (auto room = this->room(time_of(received)); !room) return room;
         take(received);
         return {};
     }
@@ -90,7 +117,9 @@ struct Pipeline::State {
     void take(const telemetry::ReceivedSpectrum& spectrum);
     bool has_packet(Apid apid) const;
     void take(const telemetry::LinkState& link);
+    void follow();
     void add(std::optional<archive::SituationRecord> situation);
+    void add_statuses(std::vector<archive::ProcedureStatusRecord> statuses);
     void compare_with_archive();
     Result<void> go_on_where_it_was_cut_off();
     std::shared_ptr<const PublishedBatch> published(RunId of, const archive::Batch& batch, bool built) const;
@@ -151,6 +180,7 @@ Result<RunId> Pipeline::begin(const archive::RunStart& start, Repeated repeated)
     for (const auto& annotation : repeated.annotations)
         numbers.push_back(std::visit([](const auto& record) { return record.seq; }, annotation));
     state_->run.emplace(*id, start, *state_, Numbering{1, std::move(numbers), Numbering::Last::given});
+    state_->run->acts = acts_among(repeated.annotations);
     state_->run->origin = std::move(repeated);
     return *id;
 }
@@ -164,18 +194,20 @@ Result<Sequence> Pipeline::forked() {
     if (auto done = commit(); !done) return done.error();
     state_->run->origin.reset();
     state_->run->numbering.forget_taken();
+    state_->run->acts.clear();
     if (state_->run->differs) return *state_->run->differs;
     return state_->run->last_durable;
 }
 
 Result<void> Pipeline::resume(RunId run, const archive::RunStart& start, Sequence durable, Compare compare,
-                              std::vector<Sequence> annotations) {
+                              std::vector<Sequence> annotations, std::vector<archive::ProcedureActRecord> acts) {
     if (state_->run) return Error{"run " + std::to_string(state_->run->id.value) + " still goes on"};
     AEOLIS_CHECK(compare != nullptr);
     state_->run.emplace(run, start, *state_, Numbering{1, std::move(annotations)});
     state_->run->repeat_until = durable;
     state_->run->last_durable = durable;
     state_->run->compare = std::move(compare);
+    state_->run->acts = std::move(acts);
     auto stored = state_->archive.raw_ends(run);
     if (!stored) {
         state_->run.reset();
@@ -199,6 +231,24 @@ void Pipeline::State::compare_with_archive() {
     run->pending.raw = std::move(not_stored);
 }
 
+/// Takes the acts again whose place among the items has come.
+/// @param now  of what comes next. A fork's other run also has acts from behind the fork
+void Pipeline::State::repeat_acts(std::optional<Ert> now) {
+    for (auto& next = run->acted; next < run->acts.size(); ++next) {
+        const archive::ProcedureActRecord& act = run->acts[next];
+        if (!run->numbering.has_come_to(act.seq)) return;
+        if (run->origin && (!now || now->microseconds + act_slack_us < act.ert.microseconds)) return;
+        auto status = run->procedures.repeat(act, run->intake.latest());
+        if (!status) {
+            if (!run->differs)
+                run->differs = Error{"the act on a procedure that is item " + std::to_string(act.seq) +
+                                     " is refused now: " + status.error().message};
+            continue;
+        }
+        add_statuses({std::move(*status)});
+    }
+}
+
 /// Continues the run once its last durable item was repeated; does nothing before that or when not repeating.
 Result<void> Pipeline::State::go_on_where_it_was_cut_off() {
     if (!run->repeats() || run->numbering.last() < run->repeat_until) return {};
@@ -212,6 +262,7 @@ Result<void> Pipeline::State::go_on_where_it_was_cut_off() {
 Result<bool> Pipeline::caught_up() {
     AEOLIS_CHECK(state_->run.has_value());
     auto& run = *state_->run;
+    state_->repeat_acts({});
     if (auto done = commit(); !done) return done.error();
     if (auto done = state_->go_on_where_it_was_cut_off(); !done) return done.error();
     if (run.differs) return *run.differs;
@@ -231,8 +282,9 @@ std::size_t Pipeline::pending_octets() const {
     return state_->pending_octets();
 }
 
-Result<void> Pipeline::State::room() {
+Result<void> Pipeline::State::room(std::optional<Ert> now) {
     AEOLIS_CHECK(run.has_value());
+    if (run->acted < run->acts.size()) repeat_acts(now);
     if (auto done = go_on_where_it_was_cut_off(); !done) return done;
     const std::size_t octets = pending_octets();
     if (octets < pending_octets_max) return {};
@@ -285,11 +337,12 @@ Result<void> Pipeline::accept(const telemetry::LinkState& link) {
 }
 
 Result<void> Pipeline::accept(const telemetry::EarthTime& time) {
-    if (auto room = state_->room(); !room) return room;
+    if (auto room = state_->room(time.now); !room) return room;
     std::vector<telemetry::StalenessChange> changes;
     state_->run->staleness.pass(time.now, changes);
     state_->add(changes, time.now);
     state_->add(state_->run->situation.changed(time.now));
+    state_->add_statuses(state_->run->procedures.pass(time.now));
     return {};
 }
 
@@ -313,6 +366,23 @@ Result<archive::Annotation> Pipeline::annotate(RunId run, archive::Annotation an
     return annotation;
 }
 
+Result<Pipeline::Acted> Pipeline::act(RunId run, archive::ProcedureActRecord act) {
+    const auto of_run = "run " + std::to_string(run.value);
+    if (!state_->run || state_->run->id != run)
+        return Acted{of_run + " does not go on: procedures are carried out while a run does"};
+    if (state_->run->repeats() || state_->run->origin)
+        return Acted{of_run + " is flown again up to where it was " + (state_->run->origin ? "forked" : "cut off") +
+                     ": try again when it goes on"};
+    if (auto room = state_->room(); !room) return room.error();
+    auto& current = *state_->run;
+    auto acted = current.procedures.act(std::move(act), current.intake.latest());
+    if (!acted) return Acted{acted.error().message};
+    acted->act.seq = current.numbering.next(current.pending);
+    current.pending.procedure_acts.push_back(std::move(acted->act));
+    state_->add_statuses({std::move(acted->status)});
+    return Acted{{}, current.pending.procedure_statuses.back()};
+}
+
 Result<void> Pipeline::accept(archive::RequestRecord request) {
     if (auto room = state_->room(); !room) return room;
     state_->run->pending.requests.push_back(std::move(request));
@@ -320,12 +390,18 @@ Result<void> Pipeline::accept(archive::RequestRecord request) {
 }
 
 Result<void> Pipeline::accept(archive::StageRecord stage) {
-    if (auto room = state_->room(); !room) return room;
+    if (auto room = state_->room(stage.ert); !room) return room;
     auto& run = *state_->run;
     stage.seq = run.numbering.next(run.pending);
     run.pending.stages.push_back(std::move(stage));
-    run.situation.follow(run.pending);
+    state_->follow();
     return {};
+}
+
+/// Gives what was added to the batch to those who watch the run.
+void Pipeline::State::follow() {
+    run->situation.follow(run->pending);
+    run->procedures.follow(run->pending);
 }
 
 void Pipeline::State::take(const telemetry::ReceivedOctets& piece) {
@@ -364,7 +440,7 @@ void Pipeline::State::take(const telemetry::ReceivedPacket& packet) {
         run->pending.notes.push_back(std::move(note));
     }
     if (!packet.link.recorded) heard(packet.link == telemetry::station_link);
-    run->situation.follow(run->pending);
+    follow();
 }
 
 void Pipeline::State::heard(bool of_ground) {
@@ -398,7 +474,7 @@ void Pipeline::State::take(const telemetry::LinkState& link) {
                                   link.lost,
                                   link.until,
                                   link.silence});
-    run->situation.follow(run->pending);
+    follow();
     if (link.link.recorded) return;
     std::vector<telemetry::StalenessChange> changes;
     using telemetry::LinkIs;
@@ -433,7 +509,7 @@ void Pipeline::State::take(const telemetry::ReceivedTone& tone) {
     record.model = run->start.tone_model;
     record.sclk = run->sent(tone.start);
     run->pending.tones.push_back(std::move(record));
-    run->situation.follow(run->pending);
+    follow();
 }
 
 /// Whether the run's dictionary has the packet, which the station makes.
@@ -469,6 +545,13 @@ void Pipeline::State::add(std::optional<archive::SituationRecord> situation) {
     if (!situation) return;
     situation->seq = run->numbering.next(run->pending);
     run->pending.situations.push_back(std::move(*situation));
+}
+
+void Pipeline::State::add_statuses(std::vector<archive::ProcedureStatusRecord> statuses) {
+    for (auto& status : statuses) {
+        status.seq = run->numbering.next(run->pending);
+        run->pending.procedure_statuses.push_back(std::move(status));
+    }
 }
 
 void Pipeline::relay_progress(double progress) {
@@ -538,7 +621,10 @@ Result<void> Pipeline::commit() {
 Result<void> Pipeline::finish(const archive::RunEnd& end) {
     AEOLIS_CHECK(state_->run.has_value());
     auto& run = *state_->run;
-    if (!run.pending.end) state_->add(run.situation.changed());  // once, though a failed commit is tried again
+    if (!run.pending.end) {  // once, though a failed commit is tried again
+        state_->add(run.situation.changed());
+        state_->add_statuses(run.procedures.pass());
+    }
     run.intake.seal(run.pending);
     run.pending.end = end;
     if (auto done = commit(); !done) return done;

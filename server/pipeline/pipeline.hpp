@@ -91,8 +91,9 @@ class Pipeline {
     /// published again but compared with the archive by `compare`; after them the run continues as any. One at a time,
     /// as begin().
     /// @param annotations  numbers of items added by people: not produced again, they keep their numbers
+    /// @param acts         those of them that were acts on procedures: they are taken again, each at its place
     Result<void> resume(RunId run, const archive::RunStart& start, Sequence durable, Compare compare,
-                        std::vector<Sequence> annotations = {});
+                        std::vector<Sequence> annotations = {}, std::vector<archive::ProcedureActRecord> acts = {});
     /// Compares the waiting items. True once all durable items were produced again. A permanent Error when one differs,
     /// or when the run cannot be marked as running again.
     Result<bool> caught_up();
@@ -117,6 +118,14 @@ class Pipeline {
     /// Adds a person's annotation: to the run in progress, durable with the next commit; to another run, durable and
     /// published when it returns. @return the annotation with its number
     Result<archive::Annotation> annotate(RunId run, archive::Annotation annotation);
+    /// What becomes of an act on a procedure.
+    struct Acted {
+        std::string refused{};                    ///< why it has no place now, in a sentence; empty: it was taken
+        archive::ProcedureStatusRecord status{};  ///< the item behind the act
+    };
+    /// Takes a person's act on a procedure of the run in progress; durable with the next commit, with the status that
+    /// follows from it. The Error: nothing can be taken now.
+    Result<Acted> act(RunId run, archive::ProcedureActRecord act);
     /// Sets the fraction of the recording that is down, 0 … 1; durable with the next commit.
     void relay_progress(double progress);
     /// Sets how many octets of each link of a run are kept as they came; 0: none.

@@ -17,6 +17,10 @@ constexpr std::size_t words_of_difference = 200;          // characters of an it
 constexpr std::uint64_t cycles_a_second = 64;
 constexpr int retries_when_closing = 4;  // then the waiting items are given up, with an Error
 
+std::string taken_not_stored(const std::string& fault) {
+    return fmt::format("this is taken, and stored as soon as the disk takes it; do not send it again. Now: {}", fault);
+}
+
 /// Compares a run's repeated items with the archive. The Error names the first that differs.
 Result<void> same_items(archive::Reader& stored, const pipeline::PublishedBatch& again) {
     archive::Sequence after = again.first_seq - 1;
@@ -129,7 +133,9 @@ Result<void> PipelineThread::resume(archive::FlownRun& cut, const archive::RunSt
         if (!now) return void(result = now.error());
         cut.last_seq = now->last_seq;
         cut.annotations = std::move(now->annotations);
-        result = pipeline_.resume(cut.run, start, cut.last_seq, compare, cut.annotations);
+        auto acts = stored->all_procedure_acts(cut.run);
+        if (!acts) return void(result = acts.error());
+        result = pipeline_.resume(cut.run, start, cut.last_seq, compare, cut.annotations, std::move(*acts));
     });
     return result;
 }
@@ -277,9 +283,18 @@ bool PipelineThread::annotate(archive::RunId run, archive::Annotation annotation
         // Answered after the commit, as a command is: a failing disk must not delay what arrives meanwhile.
         answers_.push_back([done, added = std::move(added)](const std::string& fault) {
             if (fault.empty()) return done(Annotated{*added});
-            done(Annotated{*added, fmt::format("this is taken, and stored as soon as the disk takes it; do not send it "
-                                               "again. Now: {}",
-                                               fault)});
+            done(Annotated{*added, taken_not_stored(fault)});
+        });
+    }});
+}
+
+bool PipelineThread::act(archive::RunId run, archive::ProcedureActRecord act, std::function<void(Result<Acted>)> done) {
+    return !blocked() && jobs_.try_push(Action{[this, run, act = std::move(act), done = std::move(done)] {
+        auto acted = pipeline_.act(run, act);
+        if (!acted) return done(acted.error());
+        if (!acted->refused.empty()) return done(Acted{std::move(*acted)});
+        answers_.push_back([done, acted = std::move(acted)](const std::string& fault) {
+            done(Acted{*acted, fault.empty() ? "" : taken_not_stored(fault)});
         });
     }});
 }

@@ -99,6 +99,15 @@ class PipelineThread {
     /// now, or with an Error: nothing was added. False, and nothing done, when too much waits.
     bool annotate(archive::RunId run, archive::Annotation annotation, std::function<void(Result<Annotated>)> done);
 
+    struct Acted {
+        pipeline::Pipeline::Acted outcome;
+        std::string not_stored_yet{};  ///< taken, but the disk refuses it for now; empty: durable
+    };
+    /// Takes a person's act on a procedure of the run in progress. Calls `done` on this thread once it is durable or the
+    /// disk refuses it for now, when it has no place, or with an Error: nothing can be taken. False, and nothing done,
+    /// when too much waits.
+    bool act(archive::RunId run, archive::ProcedureActRecord act, std::function<void(Result<Acted>)> done);
+
     /// Stores a forecast. Calls `done` on this thread with its number once it is durable, or with an Error. False, and
     /// nothing done, when too much waits.
     bool keep_forecast(archive::ForecastRecord forecast, std::function<void(Result<std::uint64_t>)> done);

@@ -2,6 +2,7 @@
 #include "server/pipeline/situation_feed.hpp"
 
 #include "server/archive/packet_columns.hpp"
+#include "server/pipeline/new_records.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,14 +15,6 @@ using telemetry::SituationMonitor;
 SituationMonitor::Clocks clocks_of(const archive::RunStart& start) {
     const bool known = start.entry != Sclk{};  // of another mission nobody knows when it enters
     return {known ? std::optional(start.entry) : std::nullopt, start.correlation, start.light_time_s};
-}
-
-/// Calls take(record) for the records behind `followed`, in their order.
-template <typename Record>
-void each_new(const std::vector<Record>& records, archive::Sequence followed, auto take) {
-    auto first = records.end();
-    while (first != records.begin() && std::prev(first)->seq > followed) --first;
-    for (; first != records.end(); ++first) take(*first);
 }
 
 SituationMonitor::Origin origin_of(const archive::ItemRecord& record,

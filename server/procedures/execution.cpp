@@ -180,10 +180,11 @@ void Execution::look_at_watchdogs() {
     }
 }
 
-std::optional<Ert> Execution::limit_passed(std::size_t index) const {
+std::optional<Ert> Execution::limit(std::size_t index) const {
     const Step& step = *steps_[index];
+    if (is_over(status_[index].state)) return {};
     std::optional<Ert> limit;
-    if (step.limit_s && held_.empty())
+    if (step.limit_s && held_.empty() && status_[index].active_since)
         limit =
             Ert{status_[index].active_since->microseconds + std::llround(*step.limit_s * 1.0e6) + paused_us_[index]};
     // By when a command is to leave: once it was sent, its evidence may take the way there and back.
@@ -192,6 +193,11 @@ std::optional<Ert> Execution::limit_passed(std::size_t index) const {
         const Ert by = instant_of(*step.limit_e, *watch_.prediction());
         limit = limit ? std::min(*limit, by) : by;
     }
+    return limit;
+}
+
+std::optional<Ert> Execution::limit_passed(std::size_t index) const {
+    const auto limit = this->limit(index);
     return limit && *limit < watch_.now() ? limit : std::nullopt;
 }
 

@@ -151,6 +151,14 @@ class Execution {
     const std::vector<StepStatus>& steps() const { return status_; }
     const std::vector<WatchdogStatus>& watchdogs() const { return watchdogs_; }
     const StepStatus* step(std::string_view id) const;
+    /// By when a step that is not over is to be done, or its command sent, as far as that is known.
+    std::optional<Ert> limit(std::size_t step) const;
+    /// What can be done now with the procedure as a whole, with a step, with a watchdog, by whoever may and gives a
+    /// reason.
+    std::vector<Act::Kind> acts() const;
+    std::vector<Act::Kind> acts_of_step(std::size_t step) const;
+    std::vector<Act::Kind> acts_of_watchdog(std::size_t watchdog) const;
+    Ert now() const { return watch_.now(); }
 
   private:
     /// The numbers of a step's conditions in the watch.
@@ -174,6 +182,8 @@ class Execution {
     void look_at_watchdogs();
     void look(std::size_t index);
     bool is_done(std::size_t index) const;
+    bool waits_for_release(std::size_t index) const;
+    bool command_failed(std::size_t index) const;
     std::optional<Ert> limit_passed(std::size_t index) const;
     bool advance();
     void begin_step(std::size_t index);

@@ -141,17 +141,51 @@ Result<void> Execution::sent(const Act& act) {
     if (!step.command) return Error{fmt::format("step {} has no command", step.id)};
     if (act.position != Position::command) return Error{"only the position command sends"};
     if (act.command == 0) return Error{"a command that was sent has a number"};
-    if (status.command) {
-        const auto fate = fates_.find(*status.command);
-        const bool failed = fate != fates_.end() && std::ranges::find(fate->second.status, commands::Status::failed) !=
-                                                        fate->second.status.end();
-        if (!failed)
-            return Error{fmt::format("step {}: its command was sent as number {}, and has not failed", step.id,
-                                     *status.command)};
-    }
+    if (status.command && !command_failed(*index))
+        return Error{
+            fmt::format("step {}: its command was sent as number {}, and has not failed", step.id, *status.command)};
     status.command = act.command;
     status.command_evidence = "sent; nothing is known of it yet";
     return {};
+}
+
+/// Whether the step stands at the hold before it.
+bool Execution::waits_for_release(std::size_t index) const {
+    return status_[index].state == StepState::held && !status_[index].active_since;
+}
+
+bool Execution::command_failed(std::size_t index) const {
+    const auto fate = fates_.find(status_[index].command.value_or(0));
+    return fate != fates_.end() &&
+           std::ranges::find(fate->second.status, commands::Status::failed) != fate->second.status.end();
+}
+
+std::vector<Act::Kind> Execution::acts() const {
+    if (over()) return {};
+    return {held_.empty() ? Act::Kind::hold : Act::Kind::release, Act::Kind::stop};
+}
+
+std::vector<Act::Kind> Execution::acts_of_step(std::size_t index) const {
+    std::vector<Act::Kind> kinds;
+    if (over()) return kinds;
+    const Step& step = *steps_[index];
+    const StepStatus& status = status_[index];
+    if (held_.empty() && waits_for_release(index)) kinds.push_back(Act::Kind::release);
+    if (!stands_open(index)) return kinds;
+    if (step.command && (!status.command || command_failed(index))) kinds.push_back(Act::Kind::sent);
+    if (!held_.empty()) return kinds;
+    const bool is_signed = status.signatures.size() == step.signatures.size();
+    if (!step.command && step.choices.empty() && status.by.empty()) kinds.push_back(Act::Kind::tick);
+    if (!is_signed) kinds.push_back(Act::Kind::sign);
+    if (!step.choices.empty() && is_signed) kinds.push_back(Act::Kind::choose);
+    if (step.choices.empty()) kinds.push_back(Act::Kind::skip);
+    return kinds;
+}
+
+std::vector<Act::Kind> Execution::acts_of_watchdog(std::size_t watchdog) const {
+    const WatchdogStatus& status = watchdogs_[watchdog];
+    if (over() || !status.tripped || status.acknowledged) return {};
+    return {Act::Kind::acknowledge};
 }
 
 void Execution::set_held(std::string why, std::string person) {
@@ -173,7 +207,7 @@ Result<void> Execution::release(const Act& act) {
         if (found == steps_.end()) return Error{fmt::format("'{}' is no step of {}", act.step, procedure_->id)};
         const auto index = static_cast<std::size_t>(found - steps_.begin());
         StepStatus& status = status_[index];
-        if (status.state != StepState::held || status.active_since)
+        if (!waits_for_release(index))
             return Error{fmt::format("step {} is {}, not at its hold", act.step, name_of(status.state))};
         if (!may_act(act, *(*found)->hold))
             return Error{

@@ -24,6 +24,8 @@ class ProcedureBoard {
     /// The dictionary must outlive this object.
     explicit ProcedureBoard(const dictionary::Dictionary& dictionary) : dictionary_(&dictionary) {}
 
+    /// Takes what the run has received so far, for the procedures begun from here on.
+    void know(ReceivedFacts facts) { facts_ = std::move(facts); }
     /// Begins a procedure; the same may be under way more than once. @return its number
     Result<std::uint32_t> begin(std::shared_ptr<const Procedure> procedure, Ert at);
     Result<void> on(std::uint32_t number, const Act& act);

@@ -22,8 +22,9 @@ constexpr unsigned revision_max = 9'999;
 
 class ProcedureReader : public TermReader {
   public:
+    /// @param procedures  none: those that a watchdog names are not looked for
     ProcedureReader(const std::string& file, const dictionary::Dictionary& dictionary,
-                    std::span<const std::string> procedures)
+                    std::optional<std::span<const std::string>> procedures)
         : TermReader(file, dictionary), procedures_(procedures) {}
 
     ReadProcedure read(std::string_view text);
@@ -40,7 +41,7 @@ class ProcedureReader : public TermReader {
     void settle_targets(std::vector<Step>& body);
     void check_order(const Procedure& procedure);
 
-    std::span<const std::string> procedures_;
+    std::optional<std::span<const std::string>> procedures_;
     /// Targets by name, until all steps are read: a number in Target::step is an index here.
     std::vector<std::pair<std::string, Mark>> named_;
 };
@@ -148,8 +149,8 @@ Watchdog ProcedureReader::watchdog(const YamlNode& node) {
     read.conditions = conditions(node.member("when"));
     if (const YamlNode* hold = node.member("hold")) read.hold = yes_or_no(*hold, "hold").value_or(false);
     read.begin = words(node, "begin", "begin");
-    if (!read.begin.empty() && std::ranges::find(procedures_, read.begin) == procedures_.end())
-        add(node.member("begin")->mark, unknown_name(read.begin, "procedure beside this one", procedures_,
+    if (procedures_ && !read.begin.empty() && std::ranges::find(*procedures_, read.begin) == procedures_->end())
+        add(node.member("begin")->mark, unknown_name(read.begin, "procedure beside this one", *procedures_,
                                                      [](const std::string& one) -> std::string_view { return one; }));
     return read;
 }
@@ -262,6 +263,10 @@ ReadProcedure ProcedureReader::read(std::string_view text) {
 ReadProcedure read_procedure(std::string_view text, const std::string& file, const dictionary::Dictionary& dictionary,
                              std::span<const std::string> procedures) {
     return ProcedureReader{file, dictionary, procedures}.read(text);
+}
+
+ReadProcedure read_procedure(std::string_view text, const std::string& file, const dictionary::Dictionary& dictionary) {
+    return ProcedureReader{file, dictionary, std::nullopt}.read(text);
 }
 
 }  // namespace aeolis::server::procedures

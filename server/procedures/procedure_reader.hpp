@@ -29,5 +29,7 @@ struct ReadProcedure {
 /// the encoder would refuse; a circle of branches; a step that is never reached; the limits of procedure.hpp.
 ReadProcedure read_procedure(std::string_view text, const std::string& file, const dictionary::Dictionary& dictionary,
                              std::span<const std::string> procedures);
+/// The same of a procedure that is followed: what its watchdogs begin may lie beside it no more.
+ReadProcedure read_procedure(std::string_view text, const std::string& file, const dictionary::Dictionary& dictionary);
 
 }  // namespace aeolis::server::procedures
