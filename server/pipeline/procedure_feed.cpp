@@ -57,6 +57,8 @@ ProcedureFeed::ProcedureFeed(const dictionary::Dictionary& dictionary, const arc
 
 void ProcedureFeed::follow(const archive::Batch& batch) {
     if (batch.last_seq <= followed_) return;
+    if (!batch.packets.empty())
+        newest_ = std::max(newest_.value_or(batch.packets.back().ert), batch.packets.back().ert);
     if (under_way_ > 0)
         each_new(batch.samples, followed_, [&](const archive::SampleRecord& sample) {
             if (sample.source == archive::Source::recorded) return;
@@ -81,6 +83,7 @@ void ProcedureFeed::follow(const archive::Batch& batch) {
 
 std::vector<archive::ProcedureStatusRecord> ProcedureFeed::pass(Ert now) {
     now_ = now;
+    newest_ = std::max(newest_.value_or(now), now);
     std::vector<archive::ProcedureStatusRecord> statuses;
     if (under_way_ == 0) return statuses;
     board_.pass(now);
@@ -181,7 +184,7 @@ Result<archive::ProcedureStatusRecord> ProcedureFeed::repeat(const archive::Proc
 
 Result<ProcedureFeed::Acted> ProcedureFeed::act(archive::ProcedureActRecord act,
                                                 const std::vector<std::optional<LatestValue>>& latest) {
-    if (now_) act.ert = std::clamp(act.ert, *now_, Ert{now_->microseconds + second_us});
+    if (newest_) act.ert = std::clamp(act.ert, *newest_, Ert{newest_->microseconds + second_us});
     if (act.kind == archive::ProcedureActKind::begin) {
         act.number = static_cast<std::uint32_t>(told_.size() + 1);
     } else {

@@ -75,7 +75,8 @@ class ProcedureFeed {
     std::vector<Told> told_;                 ///< by number less one
     std::size_t under_way_ = 0;              ///< procedures whose end was not told
     archive::Sequence followed_ = 0;
-    std::optional<Ert> now_;
+    std::optional<Ert> now_;     ///< the time on Earth that was given last
+    std::optional<Ert> newest_;  ///< or of a packet since
 };
 
 }  // namespace aeolis::pipeline

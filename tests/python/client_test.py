@@ -202,6 +202,22 @@ class InProgress(unittest.TestCase):
             said, _ = follower.communicate(timeout=120)
             self.assertIn("TOUCHDOWN", said)
 
+    def test_a_program_begins_a_procedure_and_acts_on_it(self) -> None:
+        server = Server()
+        self.addCleanup(server.end)
+        with Client(server.address) as aeolis:
+            self.assertIn("day_after", [each.procedure for each in aeolis.procedures()])
+            run = aeolis.start("nominal", seed=1, pace=1).run
+            begun = aeolis.begin_procedure("day_after", "flight_director", run=run, by="Ada")
+            self.assertEqual(begun.procedure.number, 1)
+            held = aeolis.act_on_procedure(1, "hold", "gnc", run=run, by="Ada", reason="not yet")
+            self.assertEqual(held.procedure.held, "Ada (gnc): not yet")
+            with self.assertRaises(AeolisError) as refused:
+                aeolis.act_on_procedure(1, "stop", "gnc", run=run, by="Ada", reason="enough")
+            self.assertEqual(refused.exception.status, 409)
+            standing = aeolis.run_procedures(run=run).procedures
+            self.assertEqual([each.procedure.held for each in standing], ["Ada (gnc): not yet"])
+
     def test_a_lost_connection_is_opened_again_without_a_gap_or_a_double(self) -> None:
         server = Server()
         self.addCleanup(server.end)

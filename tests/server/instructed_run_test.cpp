@@ -135,6 +135,8 @@ class Controlled {
                                  "/alarms",
                                  "/alarms?state=current",
                                  "/notes",
+                                 "/procedures",
+                                 "/procedures/1/acts",
                                  "/interventions",
                                  "/plan",
                                  "/timepoints",
@@ -154,8 +156,9 @@ class Controlled {
                                  "/differences?with=1",
                                  "/preconditions?command=NO_OP"})
             add("GET", std::string{"/api/v1/runs/1"} + what);
-        for (const char* path : {"/api/v1/rehearsals", "/api/v1/rehearsals/current", "/api/v1/runs", "/api/v1/plans",
-                                 "/api/v1/scenarios", "/api/v1/layouts"})
+        for (const char* path :
+             {"/api/v1/rehearsals", "/api/v1/rehearsals/current", "/api/v1/runs", "/api/v1/plans", "/api/v1/scenarios",
+              "/api/v1/layouts", "/api/v1/procedures", "/api/v1/procedures/start"})
             add("GET", path);
         for (const char* body : {R"({"plan":{"inject":"hidden_words"}})", R"({"inject":{"computer_reset":true}})",
                                  R"({"note":{"text":"x"}})"})

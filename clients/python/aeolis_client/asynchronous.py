@@ -162,6 +162,31 @@ class AsyncClient:
         body = {"text": text, "by": by, **({} if sclk is None else {"sclk": sclk})}
         return await self._ask("Item", "POST", f"/runs/{run}/notes", body)
 
+    def procedures(self) -> AsyncIterator[Any]:
+        """The mission's procedures, ProcedureEntry by id; one with findings cannot be begun."""
+        return self._pages("ProcedureList", "/procedures", {})
+
+    async def run_procedures(self, *, run: Run = "latest", at: Optional[str] = None) -> Any:
+        """The procedures of a run as they stand, or stood when Earth had received so much: a RunProcedureList."""
+        answer = await self._answer("GET", f"/api/v1/runs/{run}/procedures", query={"at": at})
+        return self._read("RunProcedureList", answer)
+
+    async def begin_procedure(self, procedure: str, position: str, *, run: Run = "latest", by: str = "") -> Any:
+        """Begins a procedure in the run that goes on; returns the item with its status once it is durable."""
+        body = {"procedure": procedure, "position": position, "by": by}
+        return await self._ask("Item", "POST", f"/runs/{run}/procedures", body)
+
+    async def act_on_procedure(
+        self, number: int, kind: str, position: str, *, step: str = "", run: Run = "latest", by: str = "", **more: Any
+    ) -> Any:
+        """Acts on a procedure of the run; returns the item with its status once it is durable.
+
+        @param kind tick, sign, choose, skip, sent, hold, release, acknowledge, stop
+        @param more reason, choice, command, as the kind wants
+        """
+        body = {"kind": kind, "step": step, "position": position, "by": by, **more}
+        return await self._ask("Item", "POST", f"/runs/{run}/procedures/{number}/acts", body)
+
     async def report(self, run: Run = "latest") -> Any:
         """The AsFlownReport: timepoints and events, predicted and flown, with the first page of commands and notes."""
         return await self._ask("AsFlownReport", "GET", f"/runs/{run}/report")
