@@ -25,7 +25,7 @@ namespace aeolis::pipeline {
 /// Cost     before a procedure is begun, and when all are over, only events are noted
 class ProcedureFeed {
   public:
-    static constexpr double evidence_every_s = 10.0;  ///< chosen: a whole status has some 10 kB
+    static constexpr double evidence_every_s = 10.0;  ///< chosen: a landing has some 200 statuses of a procedure then
 
     /// Dictionary and columns must outlive this object.
     ProcedureFeed(const dictionary::Dictionary& dictionary, const archive::PacketColumns& columns,

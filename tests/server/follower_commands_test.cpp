@@ -67,6 +67,7 @@ class Server {
         : accounts(settings.accounts) {
         spdlog::set_level(spdlog::level::off);
         settings.scenarios = shipped_scenarios;
+        settings.dictionary = AEOLIS_SOURCE_DIR "/dictionaries/msl";
         settings.web = settings.archive.parent_path() / "web";
         const bool opened = comes([&] {
             auto backend = ConsoleBackend::open(settings, tests::shipped_dictionary());
@@ -204,6 +205,20 @@ TEST_CASE("a command from a follower is its person's at the origin, and its fate
         CHECK(reply->request() == 77);
         CHECK(reply->accepted());
         CHECK(reply->reason().empty());
+    }
+    SECTION("acts on procedures go the same way, and come back with what follows from them") {
+        const std::string procedures = "/api/v1/runs/1/procedures";
+        const auto begun = follower->ask("nina", "POST", procedures,
+                                         R"({"procedure":"day_after","position":"gnc","by":"somebody else"})");
+        CHECK(begun.status == 201);
+        CHECK_THAT(begun.body, Catch::Contains(R"("begun_by":"nina (gnc)")"));
+        CHECK(follower
+                  ->ask("nina", "POST", procedures + "/1/acts",
+                        R"({"kind":"hold","position":"gnc","reason":"site B waits"})")
+                  .status == 201);
+        CHECK(comes([&] {
+            return follower->ask("nina", "GET", procedures).body.find("nina (gnc): site B waits") != std::string::npos;
+        }));
     }
     SECTION("notes go the same way, and a program's token counts as its account") {
         CHECK(follower->ask("nina", "POST", "/api/v1/runs/1/notes", R"({"text":"from site B"})").status == 201);

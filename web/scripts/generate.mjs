@@ -8,7 +8,9 @@ import { fromBinary, toBinary } from '@bufbuild/protobuf';
 import { FileDescriptorSetSchema } from '@bufbuild/protobuf/wkt';
 import { pruned } from './pruned.mjs';
 
-const FILES = ['items', 'plan', 'prediction', 'run', 'scenario', 'stream'].map((name) => `aeolis/v1/${name}.proto`);
+const FILES = ['items', 'plan', 'prediction', 'procedures', 'run', 'scenario', 'stream'].map(
+  (name) => `aeolis/v1/${name}.proto`,
+);
 
 /** The messages that the worker decodes from the socket, or from an answer, and encodes. */
 const OF_THE_WORKER = [
