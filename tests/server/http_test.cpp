@@ -963,7 +963,7 @@ TEST_CASE("the server gives the schema that it speaks, as files and as descripto
     RunningServer server;
     v1::SchemaFileList list;
     REQUIRE(from_json(web_request(server.port(), "GET", "/api/v1/schema").body, list));
-    CHECK(list.files_size() == 17);
+    CHECK(list.files_size() == 18);
     for (const auto& file : list.files()) {
         std::ifstream in{std::filesystem::path{AEOLIS_SOURCE_DIR "/schema"} / list.folder() / file};
         const auto given = web_request(server.port(), "GET", "/api/v1/schema/" + file);

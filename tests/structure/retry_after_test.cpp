@@ -23,7 +23,9 @@ TEST_CASE("503 is answered with a time after which to ask again, unless the requ
     }
     CHECK(without ==
           std::vector<std::string>{"server/api/annotation_routes.cpp: if (!annotated->not_stored_yet.empty()) "
-                                   "return respond(error_response(503, annotated->not_stored_yet));"});
+                                   "return respond(error_response(503, annotated->not_stored_yet));",
+                                   "server/api/procedure_routes.cpp: if (!done->not_stored_yet.empty()) "
+                                   "return respond(error_response(503, done->not_stored_yet));"});
 }
 
 }  // namespace structure_retry_after_test
