@@ -31,6 +31,7 @@ Result<archive::ProcedureActRecord> act_by(const std::string& position, const st
     if (auto fits = check_text("by", by, procedures::person_octets_max); !fits) return fits.error();
     if (!procedures::position_named(position)) {
         std::vector<std::string_view> known;
+        known.reserve(procedures::positions.size());
         for (const auto each : procedures::positions) known.push_back(procedures::name_of(each));
         return Error{fmt::format("position: there is no '{}'; positions are {}", position, fmt::join(known, ", "))};
     }
