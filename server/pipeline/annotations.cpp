@@ -69,6 +69,8 @@ Result<archive::ProcedureActRecord> procedure_act_of(const v1::ProcedureActReque
         return reason.error();
     if (*kind == ProcedureActKind::sent && request.command() == 0)
         return Error{"command: which one was sent? Its number in the run is wanted"};
+    if (*kind == ProcedureActKind::choose && !request.has_choice())
+        return Error{"choice: which way is taken? Its place among the step's choices is wanted, from 0"};
     act->number = number;
     act->kind = *kind;
     act->step = request.step();

@@ -76,7 +76,7 @@ void ProcedureFeed::follow(const archive::Batch& batch) {
     });
     if (under_way_ > 0)
         each_new(batch.stages, followed_, [&](const archive::StageRecord& stage) {
-            board_.on(CommandFate{stage.command, stage.stage, stage.status, stage.evidence, stage.ert});
+            board_.on(CommandFate{stage.command, stage.name, stage.stage, stage.status, stage.evidence, stage.ert});
         });
     followed_ = batch.last_seq;
 }

@@ -114,6 +114,7 @@ void Execution::on(const CommandFate& fate) {
     watch_.pass(fate.at);
     if (fates_.size() < commands_followed_max || fates_.contains(fate.command)) {
         Fate& known = fates_[fate.command];
+        known.name = fate.name;
         known.status[static_cast<std::size_t>(fate.stage)] = fate.status;
         known.text = fmt::format("{} {}: {}", name_of(fate.stage), name_of(fate.status), fate.evidence);
     }
@@ -187,8 +188,9 @@ std::optional<Ert> Execution::limit(std::size_t index) const {
     if (step.limit_s && held_.empty() && status_[index].active_since)
         limit =
             Ert{status_[index].active_since->microseconds + std::llround(*step.limit_s * 1.0e6) + paused_us_[index]};
-    // By when a command is to leave: once it was sent, its evidence may take the way there and back.
-    const bool left = step.limit_e && step.limit_e->where == EntryTime::Where::sent && status_[index].command;
+    // By when a command is to leave: once it was radiated, its evidence may take the way there and back.
+    const bool left = step.limit_e && step.limit_e->where == EntryTime::Where::sent &&
+                      command_has(index, commands::Stage::radiated, commands::Status::ok);
     if (step.limit_e && !left && watch_.prediction()) {
         const Ert by = instant_of(*step.limit_e, *watch_.prediction());
         limit = limit ? std::min(*limit, by) : by;
@@ -228,10 +230,7 @@ bool Execution::is_done(std::size_t index) const {
     if (!step.choices.empty()) return status.chosen.has_value();
     if (!status.by.empty()) return true;
     if (step.command) {
-        const auto fate = status.command ? fates_.find(*status.command) : fates_.end();
-        if (fate == fates_.end() ||
-            fate->second.status[static_cast<std::size_t>(step.command->until)] != commands::Status::ok)
-            return false;
+        if (!command_has(index, step.command->until, commands::Status::ok)) return false;
     } else if (step.conditions.empty()) {
         return !step.signatures.empty();  // to sign it was all there was to do
     }

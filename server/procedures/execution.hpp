@@ -102,6 +102,7 @@ std::optional<Act::Kind> act_named(std::string_view name);
 /// A stage of a command of the run, as the command path reports it.
 struct CommandFate {
     std::uint64_t command = 0;
+    std::string name;
     commands::Stage stage{};
     commands::Status status{};
     std::string evidence;
@@ -167,6 +168,7 @@ class Execution {
         std::vector<std::vector<std::size_t>> choices;
     };
     struct Fate {
+        std::string name;
         std::array<commands::Status, commands::stage_count> status{};
         std::string text;
     };
@@ -183,7 +185,8 @@ class Execution {
     void look(std::size_t index);
     bool is_done(std::size_t index) const;
     bool waits_for_release(std::size_t index) const;
-    bool command_failed(std::size_t index) const;
+    bool command_has(std::size_t index, commands::Status status) const;
+    bool command_has(std::size_t index, commands::Stage stage, commands::Status status) const;
     std::optional<Ert> limit_passed(std::size_t index) const;
     bool advance();
     void begin_step(std::size_t index);

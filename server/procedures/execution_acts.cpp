@@ -141,11 +141,24 @@ Result<void> Execution::sent(const Act& act) {
     if (!step.command) return Error{fmt::format("step {} has no command", step.id)};
     if (act.position != Position::command) return Error{"only the position command sends"};
     if (act.command == 0) return Error{"a command that was sent has a number"};
-    if (status.command && !command_failed(*index))
-        return Error{
-            fmt::format("step {}: its command was sent as number {}, and has not failed", step.id, *status.command)};
+    if (status.command && !command_has(*index, commands::Status::failed)) {
+        if (!command_has(*index, commands::Status::unknown))
+            return Error{fmt::format("step {}: its command was sent as number {}, and has not failed", step.id,
+                                     *status.command)};
+        if (act.reason.empty())
+            return Error{fmt::format("step {}: of its command, number {}, something is not known; to send it again "
+                                     "needs a reason",
+                                     step.id, *status.command)};
+    }
+    const auto fate = fates_.find(act.command);
+    if (fate == fates_.end())
+        return Error{fmt::format("no command of the number {} was sent since this procedure was begun", act.command)};
+    if (fate->second.name != step.command->name)
+        return Error{fmt::format("command {} is {}, and step {} has {}", act.command, fate->second.name, step.id,
+                                 step.command->name)};
     status.command = act.command;
-    status.command_evidence = "sent; nothing is known of it yet";
+    status.command_evidence = fate->second.text;
+    if (!act.reason.empty()) status.reason = act.reason;
     return {};
 }
 
@@ -154,10 +167,15 @@ bool Execution::waits_for_release(std::size_t index) const {
     return status_[index].state == StepState::held && !status_[index].active_since;
 }
 
-bool Execution::command_failed(std::size_t index) const {
+/// Whether any stage of the step's command has this status.
+bool Execution::command_has(std::size_t index, commands::Status status) const {
     const auto fate = fates_.find(status_[index].command.value_or(0));
-    return fate != fates_.end() &&
-           std::ranges::find(fate->second.status, commands::Status::failed) != fate->second.status.end();
+    return fate != fates_.end() && std::ranges::find(fate->second.status, status) != fate->second.status.end();
+}
+
+bool Execution::command_has(std::size_t index, commands::Stage stage, commands::Status status) const {
+    const auto fate = fates_.find(status_[index].command.value_or(0));
+    return fate != fates_.end() && fate->second.status[static_cast<std::size_t>(stage)] == status;
 }
 
 std::vector<Act::Kind> Execution::acts() const {
@@ -172,7 +190,9 @@ std::vector<Act::Kind> Execution::acts_of_step(std::size_t index) const {
     const StepStatus& status = status_[index];
     if (held_.empty() && waits_for_release(index)) kinds.push_back(Act::Kind::release);
     if (!stands_open(index)) return kinds;
-    if (step.command && (!status.command || command_failed(index))) kinds.push_back(Act::Kind::sent);
+    if (step.command && (!status.command || command_has(index, commands::Status::failed) ||
+                         command_has(index, commands::Status::unknown)))
+        kinds.push_back(Act::Kind::sent);
     if (!held_.empty()) return kinds;
     const bool is_signed = status.signatures.size() == step.signatures.size();
     if (!step.command && step.choices.empty() && status.by.empty()) kinds.push_back(Act::Kind::tick);

@@ -19,6 +19,11 @@ Result<std::uint32_t> ProcedureBoard::begin(std::shared_ptr<const Procedure> pro
 Result<void> ProcedureBoard::on(std::uint32_t number, const Act& act) {
     if (number == 0 || number > executions_.size())
         return Error{fmt::format("there is no procedure of the number {} in this run", number)};
+    if (act.kind == Act::Kind::sent)
+        for (std::size_t i = 0; i < executions_.size(); ++i)
+            if (std::ranges::find(executions_[i].steps(), std::optional{act.command}, &StepStatus::command) !=
+                executions_[i].steps().end())
+                return Error{fmt::format("command {} is already that of a step of procedure {}", act.command, i + 1)};
     return executions_[number - 1].on(act);
 }
 

@@ -177,6 +177,8 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
          "kind: 'begin' is none of tick"},
         {"POST", "/api/v1/runs/1/procedures/1/acts", R"({"kind":"sent","position":"command","by":"Ada"})", 422,
          "command:"},
+        {"POST", "/api/v1/runs/1/procedures/1/acts", R"({"kind":"choose","step":"poll","position":"gnc","by":"Ada"})",
+         422, "choice: which way is taken?"},
         {"POST", "/api/v1/runs/1/procedures/7/acts", R"({"kind":"tick","position":"gnc","by":"Ada"})", 404,
          "run 1 has no procedure of the number '7'"},
         {"POST", "/api/v1/runs/1/procedures/one/acts", R"({"kind":"tick","position":"gnc","by":"Ada"})", 404, "'one'"},

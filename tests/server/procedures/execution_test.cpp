@@ -35,8 +35,8 @@ class UnderWay {
         execution.on(EventReceived{tests::shipped_dictionary().event(event)->id, at(now_s)});
     }
     void pass(double seconds) { execution.pass(at(now_s += seconds)); }
-    void fate(std::uint64_t command, Stage stage, Status status) {
-        execution.on(CommandFate{command, stage, status, "evidence", at(now_s)});
+    void fate(std::uint64_t command, Stage stage, Status status, const char* name = "NO_OP") {
+        execution.on(CommandFate{command, name, stage, status, "evidence", at(now_s)});
     }
     /// Why the act was refused; empty: it was not.
     std::string act(Act::Kind kind, const std::string& step, Position position = Position::gnc,
@@ -133,16 +133,26 @@ TEST_CASE("a command's step is done by the stage of the command that was sent, n
     CHECK(run.act(Act::Kind::tick, "a", director, "surely") == "step a is done by its command, which nobody ticks");
     CHECK(send(7, director) == "only the position command sends");
     CHECK(send(0) == "a command that was sent has a number");
-    run.fate(8, Stage::executed, Status::ok);  // another command
+    CHECK(send(7) == "no command of the number 7 was sent since this procedure was begun");
+    run.fate(8, Stage::executed, Status::ok, "EDL_DO_EDL");
+    CHECK(send(8) == "command 8 is EDL_DO_EDL, and step a has NO_OP");
+    run.fate(7, Stage::queued, Status::ok);
+    run.fate(9, Stage::queued, Status::ok);
+    run.fate(10, Stage::queued, Status::ok);
     CHECK(send(7).empty());
-    CHECK(run.status("a").command_evidence == "sent; nothing is known of it yet");
+    CHECK(run.status("a").command_evidence == "queued ok: evidence");
     CHECK(send(9) == "step a: its command was sent as number 7, and has not failed");
     run.fate(7, Stage::accepted, Status::ok);
     CHECK(run.state("a") == StepState::active);
     run.fate(7, Stage::executed, Status::unknown);
     CHECK(run.state("a") == StepState::active);
     CHECK(run.status("a").command_evidence == "executed unknown: evidence");
-    run.fate(7, Stage::executed, Status::failed);
+    CHECK(send(9) == "step a: of its command, number 7, something is not known; to send it again needs a reason");
+    CHECK(run.act(Act::Kind::sent, "a", Position::command, "silence since then", 0, 10).empty());
+    CHECK(run.status("a").reason == "silence since then");
+    run.fate(7, Stage::executed, Status::ok);
+    CHECK(run.state("a") == StepState::active);  // it is that of the step no longer
+    run.fate(10, Stage::executed, Status::failed);
     CHECK(send(9).empty());
     run.fate(9, Stage::executed, Status::ok);
     CHECK(run.state("a") == StepState::checked);
@@ -235,11 +245,15 @@ TEST_CASE("a limit from entry is told only when entry is predicted", "[procedure
     CHECK(run.status("a").late_since == at(490.0));
 }
 
-TEST_CASE("by when a command is to leave is kept once it was sent, whenever its evidence comes", "[procedures]") {
+TEST_CASE("by when a command is to leave is kept once it was radiated, whenever its evidence comes", "[procedures]") {
     const auto written = with_body("  - {step: a, who: command, do: A, command: {name: NO_OP}, by: E-0:10 sent}\n");
     UnderWay sent{written}, late{written};
     for (UnderWay* run : {&sent, &late}) run->execution.predict({{500'000'000}, 100.0});  // it leaves by 390 s
-    CHECK(sent.act(Act::Kind::sent, "a", Position::command, "", 0, 1).empty());
+    for (UnderWay* run : {&sent, &late}) {  // the second waits in the queue
+        run->fate(1, Stage::queued, Status::ok);
+        CHECK(run->act(Act::Kind::sent, "a", Position::command, "", 0, 1).empty());
+    }
+    sent.fate(1, Stage::radiated, Status::ok);
     for (UnderWay* run : {&sent, &late}) run->pass(400.0);
     CHECK(sent.state("a") == StepState::active);
     CHECK(late.status("a").late_since == at(390.0));
@@ -347,8 +361,12 @@ Input any_input(std::mt19937& random, const Execution& before, double& now_s) {
         return [=](Execution& execution) { return execution.on(EventReceived{id, now}), true; };
     }
     case 3: {
-        const CommandFate fate{1 + any(3), static_cast<Stage>(any(commands::stage_count)), static_cast<Status>(any(4)),
-                               "x", now};
+        const CommandFate fate{1 + any(3),
+                               any(2) == 0 ? "NO_OP" : "OTHER",
+                               static_cast<Stage>(any(commands::stage_count)),
+                               static_cast<Status>(any(4)),
+                               "x",
+                               now};
         return [=](Execution& execution) { return execution.on(fate), true; };
     }
     default: {
@@ -414,10 +432,12 @@ void check_rules(const Execution& execution, const Procedure& procedure) {
             REQUIRE((steps[i].state == StepState::checked || steps[i].state == StepState::ticked));
 }
 
-/// Whether some position may do this now, with a reason.
+/// Whether some position may do this now, with a reason, and with a command that was sent.
 bool anybody_may(const Execution& execution, Act::Kind kind, const std::string& step, double now_s) {
     return std::ranges::any_of(positions, [&](Position position) {
-        return Execution{execution}.on(Act{kind, step, position, "A. Ng", "a reason", 0, 9, at(now_s)}).ok();
+        Execution tried{execution};
+        tried.on(CommandFate{9, "NO_OP", Stage::queued, Status::ok, "x", at(now_s)});
+        return tried.on(Act{kind, step, position, "A. Ng", "a reason", 0, 9, at(now_s)}).ok();
     });
 }
 

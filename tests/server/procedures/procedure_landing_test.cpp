@@ -87,9 +87,7 @@ class Room {
                 if (fields[i].channel)
                     take(ChannelSample{*fields[i].channel, decoded_.content.value[i], packet.ert}, execution);
         }
-        for (const auto& stage : rehearsal_.take_stages())
-            if (execution != nullptr)
-                execution->on(CommandFate{stage.command, stage.stage, stage.status, stage.evidence, stage.ert});
+        hear_stages(execution);
         if (execution != nullptr) execution->pass(rehearsal_.landing().ert_now());
     }
 
@@ -139,9 +137,17 @@ class Room {
         const auto reply = rehearsal_.submit(request, {}, true);
         INFO(step.id << ": " << reply.reason());
         REQUIRE(reply.accepted());
+        hear_stages(&execution);
         Act act{Act::Kind::sent, step.id, Position::command};
         act.command = reply.command();
         done(execution, act);
+    }
+
+    void hear_stages(Execution* execution) {
+        for (const auto& stage : rehearsal_.take_stages())
+            if (execution != nullptr)
+                execution->on(
+                    CommandFate{stage.command, stage.name, stage.stage, stage.status, stage.evidence, stage.ert});
     }
 
     void done(Execution& execution, Act act) {
