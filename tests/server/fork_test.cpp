@@ -3,6 +3,7 @@
 #include "server/archive/reader.hpp"
 #include "server/archive/run_differences.hpp"
 #include "server/archive/sqlite.hpp"
+#include "server/instruction/plan_library.hpp"
 #include "server/rehearsal/again_of.hpp"
 #include "server/scenario/scenario_text.hpp"
 #include "tests/server/running_server.hpp"
@@ -64,7 +65,18 @@ class Recorded {
             note.ert = {reader().run(parent)->clock().scet_us()};
             std::atomic<bool> noted{false};
             REQUIRE(pipeline->annotate(parent, note, [&](const auto& kept) { noted = kept.ok(); }));
-            wait_for([&] { return noted.load(); });
+            archive::ProcedureActRecord begin;
+            begin.ert = note.ert;
+            begin.kind = archive::ProcedureActKind::begin;
+            begin.procedure = "computer_reset";
+            begin.text = *server::instruction::text_of_file(AEOLIS_SOURCE_DIR
+                                                            "/dictionaries/msl/procedures/computer_reset.yaml");
+            begin.position = "systems";
+            begin.by = "flight";
+            std::atomic<bool> begun_one{false};
+            REQUIRE(pipeline->act(parent, begin,
+                                  [&](const auto& acted) { begun_one = acted && acted->outcome.refused.empty(); }));
+            wait_for([&] { return noted.load() && begun_one.load(); });
             wait_for([&] { return runner.over(); });
             REQUIRE(failure.empty());
         }
@@ -155,6 +167,9 @@ TEST_CASE("a fork to which nothing is done is its parent again, item by item, no
     CHECK(child->outcome() == parent->outcome());
     CHECK(child->digest() == parent->digest());
     CHECK(recorded.items(Recorded::child) == recorded.items(Recorded::parent));
+    REQUIRE(reader.procedures(Recorded::child)->size() == 1);  // it is still carried out behind the fork
+    CHECK(Ert{reader.procedures(Recorded::child)->front().ert_us()} >
+          Ert{reader.procedure_acts(Recorded::child, 1)->front().ert_us() + 60'000'000});
     const auto found = recorded.differences(Recorded::child, Recorded::parent);
     CHECK(found.part_e_s() == 190.0);
     CHECK(found.events_size() == 0);
