@@ -301,7 +301,8 @@ function drawOutages(
       const words =
         [...longer.reverse(), shortest].find((each) => fits(each, right - left)) ??
         (fits(shortest, end - left) && !fits(shortest, end - right) ? shortest : shape);
-      if (fits(words, end - left)) c.fillText(words, left + 5, y(lane) + 0.5);
+      // The mark alone stays where it is, beside the words of what is predicted.
+      if (fits(words, words === shape ? right - left : end - left)) c.fillText(words, left + 5, y(lane) + 0.5);
     }
   }
 }
