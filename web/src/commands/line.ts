@@ -42,6 +42,33 @@ export const fields = computed(() => {
     : [];
 });
 
+/** The step of a procedure that asked for the command in the line; it is told the command's number once that is sent. */
+export interface Purpose {
+  command: string;
+  /** "step enable of Second Chance enabled". */
+  words: string;
+  /** Values that the procedure gives, as typed; the rest it leaves to whoever sends, or to ground's solution. */
+  given: ReadonlyMap<string, string>;
+  fromSolution: boolean;
+  sent: (command: number) => void;
+}
+const purpose = signal<Purpose | undefined>(undefined);
+/** It lasts while the line has its command. */
+export const purposeNow = computed(() =>
+  chosen.value && purpose.value?.command === chosen.value.name ? purpose.value : undefined,
+);
+/** Arguments that are not as the procedure has them. */
+export const otherwise = computed(() => {
+  const asked = purposeNow.value;
+  if (!asked) return [];
+  const isAsked = ({ argument, text, from }: (typeof fields.value)[number]) => {
+    const given = asked.given.get(argument.name);
+    if (given !== undefined) return text.toLowerCase() === given.toLowerCase();
+    return !(asked.fromSolution && from === 'typed');
+  };
+  return fields.value.filter((field) => !isAsked(field)).map(({ argument }) => argument.name);
+});
+
 /** The command that would be sent, or why there is none. */
 export const intent = computed<CommandIntent | { problem: string } | undefined>(() => {
   const command = chosen.value;
@@ -97,6 +124,7 @@ export function openCommandLine(text?: string): void {
   if (text !== undefined) {
     line.value = text;
     back(true);
+    purpose.value = undefined;
     if (input) input.value = text; // before the page is drawn anew, or the selection would be lost
   }
   input?.focus();
@@ -114,8 +142,21 @@ export function typeIntoLine(letters: string): boolean {
   return true;
 }
 
+/** Puts the command of a step into the line, to be reviewed as any other. */
+export function prepare(of: Purpose): void {
+  const given = [...of.given].map(([name, value]) => `${name}=${value}`);
+  openCommandLine([of.command.toLowerCase(), ...given].join(' '));
+  choose(of.command);
+  purpose.value = of;
+  // what the procedure leaves to whoever sends it is asked for at once
+  requestAnimationFrame(() =>
+    document.querySelector<HTMLElement>('[data-testid="command-review"] [aria-invalid="true"]')?.focus(),
+  );
+}
+
 export function type(text: string): void {
   line.value = text;
+  if (text.trim() === '') purpose.value = undefined;
   choiceIndex.value = 0;
   if (step.value !== 'sending') {
     step.value = 'type';
@@ -126,6 +167,7 @@ export function type(text: string): void {
 
 export function choose(name: string): void {
   chosenName.value = name;
+  if (purpose.value?.command !== name) purpose.value = undefined;
   confirmation.value = '';
   formText.value = new Map();
   uplink.value = { ...AT_ONCE, controller: uplink.value.controller };
@@ -188,9 +230,10 @@ export async function forward(): Promise<void> {
     return;
   }
   const wasArmed = step.value === 'armed';
-  const sent = line.value;
+  const [sent, asked] = [line.value, purposeNow.value];
   const done = () => {
     if (line.value === sent) line.value = ''; // text typed meanwhile is the next command
+    if (purpose.value === asked) purpose.value = undefined;
   };
   step.value = 'sending';
   message.value = { good: undefined, text: `${command.name}: sending` };
@@ -202,8 +245,10 @@ export async function forward(): Promise<void> {
           text: `${command.name} is #${reply.command}, ${reply.octets.length / 2} octets${uplink.value.hold ? ', held' : uplink.value.releaseAt ? ', waits for its time' : ''}${reply.reason && `; ${reply.reason}`}`,
         }
       : { good: false, text: `${command.name} refused: ${reply.reason}; nothing was sent` };
-    if (reply.accepted) done();
-    else learnRights();
+    if (reply.accepted) {
+      done();
+      asked?.sent(Number(reply.command));
+    } else learnRights();
   } catch (error) {
     message.value = { good: false, text: `${command.name}: ${error instanceof Error ? error.message : String(error)}` };
     if (error instanceof OutcomeUnknown) done(); // so that another Enter does not send it again
@@ -265,6 +310,7 @@ export function back(all = false): void {
     chosenName.value = undefined;
   } else if (!all) {
     line.value = '';
+    purpose.value = undefined;
     (document.activeElement as HTMLElement | null)?.blur();
   }
 }
@@ -278,6 +324,7 @@ export function disarm(another: boolean): void {
   preview.value = undefined;
   if (step.value === 'armed' || (step.value === 'review' && another)) back(another);
   else if (another) message.value = undefined; // its number belongs to the other run
+  if (another) purpose.value = undefined; // and so does the step
   if (armed !== undefined)
     message.value = { good: undefined, text: `${armed} is not armed any more: nothing was sent` };
 }

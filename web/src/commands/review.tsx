@@ -15,8 +15,10 @@ import {
   intent,
   intentKey,
   openCommandLine,
+  otherwise,
   previewNow,
   problemNow,
+  purposeNow,
   step,
   tryOut,
   typed,
@@ -395,12 +397,27 @@ function Effect({ onKey }: Pick<Properties, 'onKey'>) {
   );
 }
 
+/** The step of a procedure for which it is sent. */
+function For() {
+  const asked = purposeNow.value;
+  if (!asked) return null;
+  return (
+    <p data-testid="command-purpose">
+      For {asked.words}.
+      {otherwise.value.length > 0 && (
+        <span class="caution"> ▲ Not as the procedure has it: {otherwise.value.join(', ')}.</span>
+      )}
+    </p>
+  );
+}
+
 export function Review({ command, onKey }: Properties) {
   return (
     <div class={`review ${step.value === 'armed' ? 'review-armed' : ''}`} data-testid="command-review">
       <p>
         <b>{command.name}</b> {command.text}
       </p>
+      {step.value !== 'armed' && <For />}
       {step.value !== 'armed' && command.reasonForWarning && <p class="caution">▲ {command.reasonForWarning}</p>}
       <DryRun command={command} onKey={onKey} />
       {step.value !== 'armed' && (
@@ -427,6 +444,7 @@ export function Armed({ command, onKey }: { command: DictionaryCommand; onKey: (
       <div class="armed" data-testid="command-armed">
         <b>▲ ARMED: {command.name}</b>
         {command.reasonForWarning && <p class="caution">▲ {command.reasonForWarning}</p>}
+        {otherwise.value.length > 0 && <For />}
         <Verdict command={command} />
         <label>
           <span>
