@@ -11,6 +11,7 @@ export const PANELS = [
   'commands',
   'channels',
   'alarms',
+  'procedures',
   'notes',
   'packets',
   'verdicts',

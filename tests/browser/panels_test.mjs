@@ -24,6 +24,7 @@ const SHOWN = {
   commands: /EDL_DO_EDL #2[^]*EDL_SET_PARAMETERS #1/,
   channels: /altitude_m, descent stage\s+-?\d/,
   alarms: /no alarm/, // a landing without a fault raises none
+  procedures: /Commanding closed[^]*Start of entry, descent and landing[^]*UHF lost/,
   notes: /nothing is written down yet/,
   packets: /EdlStatus\s+\d/,
   verdicts: /✓ All .* bit for bit/,

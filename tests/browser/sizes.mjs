@@ -87,6 +87,42 @@ STATES.touchdown = async (serve, t) => {
   };
 };
 
+/** Two procedures under way, beside the timeline and in the place of the data: one waits for its release, one is held. */
+STATES.procedures = async (serve, t) => {
+  const server = await serve(t, 'procedures', ['--scenario', 'nominal', '--pace', '10']);
+  const post = async (route, body) => {
+    const answer = await fetch(`${server.address}/api/v1/runs/1/procedures${route}`, {
+      method: 'POST',
+      body: JSON.stringify({ position: 'flight_director', by: 'A. Ng', ...body }),
+    });
+    if (!answer.ok) throw new Error(`${route}: ${answer.status} ${await answer.text()}`);
+  };
+  await waitFor(
+    async () => (await server.get('/runs')).runs.length,
+    (runs) => runs > 0,
+  );
+  await post('', { procedure: 'uhf_lost' });
+  await post('/1/acts', { kind: 'hold', reason: 'The station asks for a minute.' });
+  await post('', { procedure: 'start' });
+  await post('/2/acts', { kind: 'sign', step: 'solution', position: 'navigation' });
+  await waitFor(
+    async () => (await server.get('/runs/1/procedures')).procedures[1].procedure.part,
+    (part) => part === 'body',
+  );
+  await control(server, { pause: true });
+  return {
+    server,
+    reach: async ({ page, shows }) => {
+      await shows('under-way', /UHF lost[^]*Start of entry/);
+      await page.getByTestId('tab-procedures').click();
+      await page.getByTestId('position').selectOption('flight_director');
+      await page.getByTestId('signature').fill('A. Ng');
+      await page.getByTestId('signature').press('Enter');
+      await shows('procedure', /release/);
+    },
+  };
+};
+
 /** A past view of the landed run: bar, marks and double borders take their room. */
 STATES.past = async (serve, t) => {
   const { server, reach } = await STATES.landed((of, _name, more) => serve(of, 'past', more), t);

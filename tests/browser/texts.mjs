@@ -179,7 +179,8 @@ export function notWhole() {
   }
   // each control is whole in every box around it; only rows of a list, what stands behind the command line or under
   // what is waited for, and the panels of a telephone are scrolled to
-  const rows = '.table-scroll, .packets, .plots-named, .fields, .offers, .panel-commands .panel-body, .waiting';
+  const rows =
+    '.table-scroll, .under-way, .packets, .plots-named, .fields, .offers, .panel-commands .panel-body, .waiting';
   const scrolled = innerWidth > 1100 ? rows : `${rows}, .grid, .choices`;
   for (const control of document.querySelectorAll('button, input, select, textarea, summary, a[href], kbd')) {
     if (hiddenBy(control) || !control.checkVisibility({ visibilityProperty: true, opacityProperty: true })) continue;

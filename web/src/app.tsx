@@ -38,6 +38,7 @@ const ExpiredBar = openedLater(async () => (await import('./access/log_in')).Exp
 const DATA = {
   channels: Channels,
   alarms: openedLater(async () => (await import('./alarms/view')).Alarms),
+  procedures: openedLater(async () => (await import('./procedures/view')).Procedures),
   notes: openedLater(async () => (await import('./notes/view')).Notes),
   users: openedLater(async () => (await import('./users/view')).Users),
   packets: openedLater(async () => (await import('./packets/view')).Packets),

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// @vitest-environment happy-dom
 import { describe, expect, it } from 'vitest';
 import type { AlarmState } from '../alarms/model';
 import type { RunStore } from '../run/store';
@@ -15,6 +16,8 @@ import {
   stage,
   staleness,
 } from '../testing/fixtures';
+import { lineOf } from '../procedures/model';
+import { aStep, anExecution } from '../testing/procedures';
 import { firstLine, fitted, reportOf } from './model';
 import type { Instant } from './model';
 
@@ -34,6 +37,7 @@ const instant = (run: RunStore, more: Partial<Instant> = {}): Instant => ({
   ),
   alarms: [],
   armed: [],
+  procedures: [],
   inSight: [],
   ...more,
 });
@@ -94,6 +98,15 @@ describe('the text of an anomaly report', () => {
       '- more_0: watch, acknowledged',
     ]);
     expect(lines).toContain('+3 more');
+  });
+  it('has each procedure under way with the steps that it is at', () => {
+    const steps = [aStep('poll', { state: 'active' }), aStep('done', { state: 'ticked' })];
+    const procedures = [lineOf(anExecution({ steps })), lineOf(anExecution({ number: 2, held: 'Ann: wait' }))];
+    expect(linesOf(instant(aStore(), { procedures })).slice(5, 8)).toEqual([
+      'Procedures under way:',
+      '- #1 A poll, under way: poll',
+      '- #2 A poll, held',
+    ]);
   });
   it('says of each link whether it is up, silent as predicted, or lost', () => {
     const run = aStore([

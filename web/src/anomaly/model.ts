@@ -37,6 +37,8 @@ export interface Instant {
   alarms: readonly AlarmState[] | undefined;
   /** Names of the commands that are armed, not sent. */
   armed: readonly string[];
+  /** The procedures under way, a line each. */
+  procedures: readonly string[];
   /** Names of the channels whose values are in sight. */
   inSight: readonly string[];
 }
@@ -71,6 +73,9 @@ export function reportOf(instant: Instant): Report {
     ...alarmLines(instant),
     ...linkLines(instant),
     ...commandLines(instant),
+    ...(instant.procedures.length > 0
+      ? ['Procedures under way:', ...listed(instant.procedures.map((line) => `- ${line}`))]
+      : []),
   ];
   const values = channelsOf(dictionary, instant.inSight).map((channel) => valueLine(instant, channel));
   return {

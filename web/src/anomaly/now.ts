@@ -3,6 +3,7 @@
 import { alarms, listed } from '../alarms/model';
 import { hazardous, stage } from '../commands/file';
 import { chosen, step } from '../commands/line';
+import { executions, lineOf, underWay } from '../procedures/model';
 import { isLost, stream } from '../run/connection';
 import { dictionary, modeNow, pastRange, shownRun, withRecording } from '../run/shown';
 import { situationNow } from '../situation/model';
@@ -27,6 +28,7 @@ export function instantNow(): Instant | undefined {
       ...(step.value === 'armed' && chosen.value ? [chosen.value.name] : []),
       ...(stage.value === 'armed' ? hazardous.value : []),
     ],
+    procedures: executions.value || run.proceduresVersion === 0 ? underWay.value.map(lineOf) : ['not known here'],
     inSight: channelsInSight(),
   };
 }

@@ -16,6 +16,7 @@ export type Tab =
   | 'campaigns'
   | 'what_if'
   | 'alarms'
+  | 'procedures'
   | 'notes'
   | 'users'
   | 'vehicle';
@@ -24,6 +25,7 @@ export const TABS: { id: Tab; title: string; key: string; words: string }[] = [
   { id: 'channels', title: 'Channels', key: 'c', words: 'channels: values, ages, limits' },
   { id: 'vehicle', title: 'Vehicle', key: 'b', words: 'the moving picture of the vehicle' },
   { id: 'alarms', title: 'Alarms', key: 'a', words: 'alarms: acknowledge, shelve, reset' },
+  { id: 'procedures', title: 'Procedures', key: '8', words: 'procedures: begin one, its steps, what to do now' },
   { id: 'notes', title: 'Notes', key: 'n', words: 'shift log: write, search' },
   { id: 'packets', title: 'Packets', key: 'k', words: 'packets: octets and fields' },
   { id: 'verdicts', title: 'Verdicts', key: 'v', words: 'verdicts: live against recorded' },

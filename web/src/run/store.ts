@@ -138,9 +138,10 @@ export class RunStore {
   /** Channels whose history has arrived. Other channels without samples may not have been requested yet. */
   askedFor = new Set<string>();
   thinnedSinceHistory = false;
-  /** Counts news of alarms; with notesVersion, tells other modules to ask again. */
+  /** Counts news of alarms; with the two below, tells other modules to ask again. */
   alarmsVersion = 0;
   notesVersion = 0;
+  proceduresVersion = 0;
   /** Counts items on which the prediction of the timeline depends: firings, tones, stages of commands. */
   timelineVersion = 0;
   /** Newest SCLK of all samples, events and tones. */
@@ -430,6 +431,7 @@ export class RunStore {
     if (item.kind === 'event' || item.kind === 'tone') this.sawSclk(item.fact.sclk);
     if (ABOUT_ALARMS.has(item.kind) || this.isAboutLoss(item)) ++this.alarmsVersion;
     if ((item.kind as string) === 'note') ++this.notesVersion;
+    if ((item.kind as string) === 'procedure') ++this.proceduresVersion;
     if (ABOUT_TIMELINE.has(item.kind)) ++this.timelineVersion;
     switch (item.kind) {
       case 'event':

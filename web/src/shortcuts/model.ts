@@ -22,7 +22,7 @@ import { choice, pan, zoom } from '../run/window';
 
 export const helpShown = signal(false);
 /**
- * Opens a panel and focuses its first control: as soon as the panel is there, since some are loaded when first opened;
+ * Opens a panel and focuses its first control, or the one that comes first in its work: as soon as the panel is there, since some are loaded when first opened;
  * not when the focus has gone elsewhere meanwhile.
  */
 export function focusPanel(which: Tab): void {
@@ -32,7 +32,9 @@ export function focusPanel(which: Tab): void {
   const panel = `[data-testid="panel-${place === 'data' && ['data', undefined].includes(full.value) ? 'data' : which}"]`;
   const focusFirst = () => {
     if (placeOf(which) !== place || document.activeElement !== before) return;
-    const first = document.querySelector<HTMLElement>(`${panel} .table-box :is(input, select, button, [tabindex])`);
+    const first =
+      document.querySelector<HTMLElement>(`${panel} .table-box [data-first]:enabled`) ??
+      document.querySelector<HTMLElement>(`${panel} .table-box :is(input, select, button, [tabindex])`);
     if (first) {
       first.focus();
       if (first instanceof HTMLInputElement && first.type === 'text') first.select(); // what is filled in is replaced by the next letter

@@ -78,6 +78,9 @@ export function named(item: Item['item']) {
       return {
         entries: item.value.entries.map((entry) => ({ ...entry, rank: nameOf(SituationEntry_Rank, entry.rank) })),
       };
+    case 'procedure':
+    case 'procedureAct':
+      return {}; // the page asks for what it shows of procedures
     default:
       return item.value;
   }

@@ -6,6 +6,7 @@ import { palette } from '../draw/palette';
 import { TYPE } from '../design/type';
 import type { Surface } from '../draw/canvas';
 import { ticks, timeLabel, timeStep } from '../draw/axis';
+import { openedLater } from '../design/opened_later';
 import { Panel } from '../design/panel';
 import { LAYOUT } from '../layout';
 import { cutoff, dictionary, pastRange, replay, runNow, shownRun, tick, timepoints, withRecording } from '../run/shown';
@@ -732,6 +733,8 @@ function AnchorTree() {
   );
 }
 
+const UnderWay = openedLater(async () => (await import('../procedures/under_way')).UnderWay);
+
 export function Timeline() {
   const run = runNow();
   const fired = run ? firedCount(run, timepoints.value, cutoff.value) : { all: 0, byTone: 0 };
@@ -795,6 +798,7 @@ export function Timeline() {
       />
       <Detail />
       <AnchorTree />
+      {run && run.proceduresVersion > 0 && <UnderWay />}
     </Panel>
   );
 }
