@@ -66,8 +66,8 @@ class Fop {
     Result<void> send(std::uint64_t tag, std::span<const std::uint8_t> data, Service service);
 
     /// The next frame to radiate; none when there is nothing to send or the window is full. Of both services the frame
-    /// that was sent first goes first; a sequence-controlled one that cannot go yet, or was radiated before, holds up no
-    /// expedited one.
+    /// that was sent first goes first. A sequence-controlled one that cannot go yet, or was radiated before, holds up
+    /// no expedited one.
     std::optional<Outgoing> next();
 
     void on(const Clcw& clcw);

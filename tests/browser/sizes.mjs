@@ -87,7 +87,7 @@ STATES.touchdown = async (serve, t) => {
   };
 };
 
-/** Two procedures under way, beside the timeline and in the place of the data: one waits for its release, one is held. */
+/** Two procedures under way, beside the timeline and in the place of the data: one awaits its release, one is held. */
 STATES.procedures = async (serve, t) => {
   const server = await serve(t, 'procedures', ['--scenario', 'nominal', '--pace', '10']);
   const post = async (route, body) => {

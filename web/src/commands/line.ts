@@ -42,7 +42,7 @@ export const fields = computed(() => {
     : [];
 });
 
-/** The step of a procedure that asked for the command in the line; it is told the command's number once that is sent. */
+/** The step of a procedure that asked for the command in the line; it is told the number once the command is sent. */
 export interface Purpose {
   command: string;
   /** "step enable of Second Chance enabled". */

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The procedures of the library and those of the run shown, as the server has them at the instant shown. The page judges
-// none of them: what can be done is the server's word, and only who does it is compared with the position chosen here.
+// The procedures of the library and those of the run shown, as the server has them at the instant shown. The page
+// judges none of them: what can be done is the server's word, and only who does it is compared with the position chosen
+// here.
 import { computed, signal } from '@preact/signals';
 import type { Status } from '../design/status';
 import { Refused, wordsFor } from '../run/api';

@@ -19,8 +19,8 @@ export const shownNow = computed<Execution | 'library' | 'over'>(() => {
 });
 
 /**
- * Focuses what comes next after something was done, unless the person went elsewhere: the row of the step of now, not its
- * button, so that a second press does nothing.
+ * Focuses what comes next after something was done, unless the person went elsewhere: the row of the step of now, not
+ * its button, so that a second press does nothing.
  */
 export function goOn(): void {
   requestAnimationFrame(() => {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The panel: which procedure is shown, who the person is, and below it the procedure, those that are over, or the library.
+// The panel: which procedure is shown, who the person is, and below it the procedure, those that are over, or the
+// library.
 import { signal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import { access, mayAct } from '../access/model';
