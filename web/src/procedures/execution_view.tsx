@@ -80,12 +80,12 @@ function WatchdogRow({ dog, one, run }: { dog: Watchdog; one: Execution | undefi
 /** Watchdogs that have not tripped, or were seen: folded away. */
 export function Watchdogs({ of, one, run }: { of: readonly Watchdog[]; one: Execution | undefined; run: RunStore }) {
   if (of.length === 0) return null;
-  const tripped = of.filter(({ tripped_us }) => tripped_us !== undefined).length;
+  const seen = of.filter(({ acknowledged }) => acknowledged !== undefined).length;
   return (
     <details class="watchdogs">
       <summary>
         {of.length} {of.length === 1 ? 'watchdog' : 'watchdogs'}
-        {tripped > 0 && `, ${tripped} acknowledged`}
+        {seen > 0 && `, ${seen} acknowledged`}
       </summary>
       <ul class="steps">
         {of.map((dog) => (
@@ -172,7 +172,7 @@ function Head({ one, run }: { one: Execution; run: RunStore }) {
         {button('hold', 'hold', true)}
         {button('stop', 'stop', true)}
         <a href={printOf(one.procedure)} target="_blank" rel="noopener">
-          print
+          print the library’s
         </a>
       </div>
       {one.held !== '' && (

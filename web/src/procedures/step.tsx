@@ -4,7 +4,7 @@ import { signal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import { prepare, step as lineStep } from '../commands/line';
 import { STATUS } from '../design/status';
-import { cutoff, pastRange, runNow, signalOfRun, takesCommands } from '../run/shown';
+import { cutoff, pastRange, runNow, signalOfRun, store, takesCommands } from '../run/shown';
 import type { RunStore } from '../run/store';
 import { dayOfYear, fromEntry, secondsOfErt } from '../run/time';
 import { roughly } from '../situation/countdown';
@@ -196,6 +196,7 @@ export function untied(run: RunStore, step: Step, all: readonly Execution[]): nu
 
 /** `why`: the reason for sending it again; '': it is sent for the first time. */
 function openCommand(one: Execution, step: Step, command: Prepared, why: string): void {
+  const run = store.value;
   problem.value = '';
   prepare({
     command: command.name,
@@ -204,7 +205,9 @@ function openCommand(one: Execution, step: Step, command: Prepared, why: string)
     fromSolution: command.from_solution,
     sent: (number) =>
       void tie(one.number, { kind: 'sent', step: step.step, command: number, reason: why }).then((taken) => {
-        if (!taken) problem.value = `${problem.value}. Number ${number} was sent: tie it to the step here.`;
+        if (taken || store.value !== run) return;
+        const untold = `number ${number} was sent, and the step does not know it: tie it to the step here`;
+        problem.value = problem.value === '' ? untold : `${problem.value}; ${untold}`;
       }),
   });
 }
