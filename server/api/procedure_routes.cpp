@@ -106,9 +106,9 @@ void Api::post_procedure_act(const ApiRequest& call) {
     act(call, [wanted, given = call.parts[1]](archive::Reader& reader, archive::RunId id, Ert now) -> Acted {
         const auto number = procedure_number(given);
         if (!number) return no_procedure(id, given);
-        const auto before = reader.procedure_acts(id, *number);
-        if (!before) return error_response(500, before.error());
-        if (before->empty()) return no_procedure(id, given);
+        const auto begun = reader.has_procedure(id, *number);
+        if (!begun) return error_response(500, begun.error());
+        if (!*begun) return no_procedure(id, given);
         auto made = procedure_act_of(wanted, *number, wanted.by(), now);
         if (!made) return error_response(422, made.error());
         return std::move(*made);

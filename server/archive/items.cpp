@@ -4,6 +4,7 @@
 #include "server/archive/procedure_status.hpp"
 
 #include <cmath>
+#include <fmt/format.h>
 #include <limits>
 
 namespace aeolis::archive {
@@ -249,7 +250,16 @@ v1::Item to_item(const ProcedureActRecord& record) {
 
 v1::Item to_item(const ProcedureStatusRecord& record) {
     v1::Item item = item_with(record);
-    *item.mutable_procedure() = unpacked_status(record.status);
+    auto& status = *item.mutable_procedure();
+    if (auto whole = unpacked_status(record.status)) {
+        status = std::move(*whole);
+        return item;
+    }
+    status.set_number(record.number);
+    status.set_procedure(record.procedure);
+    status.set_title(fmt::format("the status of procedure {} cannot be read: its octets in the archive are damaged",
+                                 record.procedure));
+    status.set_held(record.held);
     return item;
 }
 

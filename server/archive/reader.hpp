@@ -306,6 +306,8 @@ class Reader {
     Result<v1::NoteList> notes(RunId run, const NoteQuery& query);
     /// The newest status of each procedure of the run, by number, as known at `at` by the clock on Earth.
     Result<std::vector<v1::Item>> procedures(RunId run, std::optional<Ert> at = {});
+    /// Whether a procedure of the number was begun in the run.
+    Result<bool> has_procedure(RunId run, std::uint32_t number);
     /// What people did with a procedure of the run, oldest first; empty: it has none of the number.
     Result<std::vector<v1::Item>> procedure_acts(RunId run, std::uint32_t number);
     /// The interventions of instructors in the run. Those being rehearsed see them only once the run is over.

@@ -388,22 +388,36 @@ Result<v1::RecordingSummary> Reader::recording(RunId run) {
     return summary;
 }
 
-// ---- procedures ------------------------------------------------------------------------------------------------------
+// ---- procedures -----------------------------------------------------------------------------------------------------
 
 namespace {
 
-/// Reads all rows of a statement whose parameters are bound.
+/// Binds the first three parameters to all items of a run.
+sqlite::Statement& of_run(sqlite::Statement& rows, RunId run) {
+    return rows.bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max)).bind(3, std::int64_t{-1});
+}
+
+/// Gives each row of a statement whose parameters are bound to `take`; ends with the first Error.
+Result<void> each_row(sqlite::Statement& rows, auto take) {
+    for (;;) {
+        const auto found = rows.step();
+        if (!found) return found.error();
+        if (!*found) return {};
+        if (auto taken = take(rows); !taken) return taken;
+    }
+}
+
 template <typename Record>
 Result<std::vector<v1::Item>> all_items(Reader::State& reader, sqlite::Statement& rows) {
     std::vector<v1::Item> items;
-    for (;;) {
-        auto found = rows.step();
-        if (!found) return found.error();
-        if (!*found) return items;
-        auto item = reader.item<Record>(rows);
+    auto read = each_row(rows, [&](sqlite::Statement& row) -> Result<void> {
+        auto item = reader.item<Record>(row);
         if (!item) return item.error();
         items.push_back(std::move(*item));
-    }
+        return {};
+    });
+    if (!read) return read.error();
+    return items;
 }
 
 }  // namespace
@@ -414,11 +428,7 @@ Result<std::vector<v1::Item>> Reader::procedures(RunId run, std::optional<Ert> a
                                           " AND ert_us <= ?4 GROUP BY number)");
     auto rows = state_->query(sql.c_str());
     if (!rows) return rows.error();
-    (*rows)
-        ->bind(1, item_key(run, 0))
-        .bind(2, item_key(run, sequence_max))
-        .bind(3, std::int64_t{-1})
-        .bind(4, at ? at->microseconds : std::numeric_limits<std::int64_t>::max());
+    of_run(**rows, run).bind(4, at ? at->microseconds : std::numeric_limits<std::int64_t>::max());
     auto items = all_items<ProcedureStatusRecord>(*state_, **rows);
     if (items) std::ranges::sort(*items, {}, [](const v1::Item& item) { return item.procedure().number(); });
     return items;
@@ -427,25 +437,27 @@ Result<std::vector<v1::Item>> Reader::procedures(RunId run, std::optional<Ert> a
 Result<std::vector<ProcedureActRecord>> Reader::all_procedure_acts(RunId run) {
     auto rows = state_->query(rows_sql<ProcedureActRecord>());
     if (!rows) return rows.error();
-    (*rows)->bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max)).bind(3, std::int64_t{-1});
     std::vector<ProcedureActRecord> acts;
-    for (;;) {
-        auto found = (*rows)->step();
-        if (!found) return found.error();
-        if (!*found) return acts;
-        acts.push_back(read_row<ProcedureActRecord>(**rows));
-    }
+    auto read = each_row(of_run(**rows, run), [&](sqlite::Statement& row) -> Result<void> {
+        acts.push_back(read_row<ProcedureActRecord>(row));
+        return {};
+    });
+    if (!read) return read.error();
+    return acts;
+}
+
+Result<bool> Reader::has_procedure(RunId run, std::uint32_t number) {
+    auto rows = state_->query("SELECT 1 FROM procedure_acts WHERE key BETWEEN ?1 AND ?2 AND key > ?3 AND number = ?4 "
+                              "LIMIT 1");
+    if (!rows) return rows.error();
+    return of_run(**rows, run).bind(4, std::int64_t{number}).step();
 }
 
 Result<std::vector<v1::Item>> Reader::procedure_acts(RunId run, std::uint32_t number) {
     static const std::string sql = select_sql<ProcedureActRecord>("key BETWEEN ?1 AND ?2 AND number = ?4");
     auto rows = state_->query(sql.c_str());
     if (!rows) return rows.error();
-    (*rows)
-        ->bind(1, item_key(run, 0))
-        .bind(2, item_key(run, sequence_max))
-        .bind(3, std::int64_t{-1})
-        .bind(4, std::int64_t{number});
+    of_run(**rows, run).bind(4, std::int64_t{number});
     return all_items<ProcedureActRecord>(*state_, **rows);
 }
 

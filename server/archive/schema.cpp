@@ -275,9 +275,9 @@ Error not_ours(const sqlite::Database& database) {
     return {database.file() + " is not an Aeolis archive"};
 }
 
-Error before_release(const sqlite::Database& database) {
-    return {database.file() + " was written before the first release, in another layout: open it with the Aeolis "
-                              "that wrote it, or name another file"};
+/// @param why  "was written …"
+Error of_another_build(const sqlite::Database& database, const std::string& why) {
+    return {database.file() + " " + why + ": open it with the Aeolis that wrote it, or name another file"};
 }
 
 constexpr std::int64_t before_release_id =
@@ -296,15 +296,19 @@ Result<bool> is_empty(sqlite::Database& database) {
     if (!version) return version.error();
     if (!tables) return tables.error();
     if (*id == 0 && *version == 0 && *tables == 0) return true;
-    if (*id == before_release_id) return before_release(database);
+    if (*id == before_release_id)
+        return of_another_build(database, "was written before the first release, in another layout");
     if (*id != application_id || *version < 1) return not_ours(database);
     if (*version == schema_version) {
         const auto whole = database.integer_of("SELECT count(*) FROM sqlite_schema WHERE name = 'procedure_acts'");
         if (!whole) return whole.error();
-        return *whole != 0 ? Result<bool>{false} : before_release(database);
+        if (*whole == 0)
+            return of_another_build(database, "was written by a build of before 0.2.0, without tables for procedures");
+        return false;
     }
-    return Error{database.file() + " has archive schema " + std::to_string(*version) + ", this program has " +
-                 std::to_string(schema_version) + ": open it with the Aeolis that wrote it, or name another file"};
+    const auto why =
+        "has archive schema " + std::to_string(*version) + ", this program has " + std::to_string(schema_version);
+    return of_another_build(database, why);
 }
 
 }  // namespace

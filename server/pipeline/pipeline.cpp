@@ -18,21 +18,15 @@ namespace aeolis::pipeline {
 
 namespace {
 
-/// How far behind its own time an act of the other run may be taken again: an act's time is within a second of the
-/// newest item's, and items of a delivery are not quite in the order of their times.
-constexpr std::int64_t act_slack_us = 10'000'000;
+/// How far an act's time may be ahead of the newest item that was there when it was taken: ProcedureFeed::act.
+constexpr std::int64_t act_ahead_us = 1'000'000;
 
-Ert time_of(const telemetry::ReceivedTone& tone) {
-    return tone.end;
-}
-Ert time_of(const auto& received) {
-    return received.ert;
-}
-
-std::vector<archive::ProcedureActRecord> acts_among(std::span<const archive::Annotation> annotations) {
+std::vector<archive::ProcedureActRecord> acts_before(std::span<const archive::Annotation> annotations, Ert fork) {
     std::vector<archive::ProcedureActRecord> acts;
     for (const auto& annotation : annotations)
-        if (const auto* act = std::get_if<archive::ProcedureActRecord>(&annotation)) acts.push_back(*act);
+        if (const auto* act = std::get_if<archive::ProcedureActRecord>(&annotation);
+            act != nullptr && act->ert.microseconds <= fork.microseconds + act_ahead_us)
+            acts.push_back(*act);
     return acts;
 }
 
@@ -97,8 +91,8 @@ struct Pipeline::State {
         }
     };
 
-    Result<void> room(std::optional<Ert> now = {});
-    void repeat_acts(std::optional<Ert> now);
+    Result<void> room();
+    void repeat_acts();
     std::size_t pending_octets() const;
     void take(const telemetry::ReceivedOctets& piece);
     void take(const telemetry::ReceivedPacket& packet);
@@ -107,7 +101,7 @@ struct Pipeline::State {
     void add(std::span<const telemetry::StalenessChange> changes, Ert ert);
     template <typename Received>
     Result<void> accept(const Received& received) {
-        if (auto room = this->room(time_of(received)); !room) return room;
+        if (auto room = this->room(); !room) return room;
         take(received);
         return {};
     }
@@ -180,7 +174,7 @@ Result<RunId> Pipeline::begin(const archive::RunStart& start, Repeated repeated)
     for (const auto& annotation : repeated.annotations)
         numbers.push_back(std::visit([](const auto& record) { return record.seq; }, annotation));
     state_->run.emplace(*id, start, *state_, Numbering{1, std::move(numbers), Numbering::Last::given});
-    state_->run->acts = acts_among(repeated.annotations);
+    state_->run->acts = acts_before(repeated.annotations, repeated.until);
     state_->run->origin = std::move(repeated);
     return *id;
 }
@@ -191,6 +185,7 @@ bool Pipeline::differs() const {
 
 Result<Sequence> Pipeline::forked() {
     AEOLIS_CHECK(state_->run.has_value() && state_->run->origin.has_value());
+    state_->repeat_acts();
     if (auto done = commit(); !done) return done.error();
     state_->run->origin.reset();
     state_->run->numbering.forget_taken();
@@ -232,12 +227,10 @@ void Pipeline::State::compare_with_archive() {
 }
 
 /// Takes the acts again whose place among the items has come.
-/// @param now  of what comes next. A fork's other run also has acts from behind the fork
-void Pipeline::State::repeat_acts(std::optional<Ert> now) {
+void Pipeline::State::repeat_acts() {
     for (auto& next = run->acted; next < run->acts.size(); ++next) {
         const archive::ProcedureActRecord& act = run->acts[next];
         if (!run->numbering.has_come_to(act.seq)) return;
-        if (run->origin && (!now || now->microseconds + act_slack_us < act.ert.microseconds)) return;
         auto status = run->procedures.repeat(act, run->intake.latest());
         if (!status) {
             if (!run->differs)
@@ -262,7 +255,7 @@ Result<void> Pipeline::State::go_on_where_it_was_cut_off() {
 Result<bool> Pipeline::caught_up() {
     AEOLIS_CHECK(state_->run.has_value());
     auto& run = *state_->run;
-    state_->repeat_acts({});
+    state_->repeat_acts();
     if (auto done = commit(); !done) return done.error();
     if (auto done = state_->go_on_where_it_was_cut_off(); !done) return done.error();
     if (run.differs) return *run.differs;
@@ -282,9 +275,9 @@ std::size_t Pipeline::pending_octets() const {
     return state_->pending_octets();
 }
 
-Result<void> Pipeline::State::room(std::optional<Ert> now) {
+Result<void> Pipeline::State::room() {
     AEOLIS_CHECK(run.has_value());
-    if (run->acted < run->acts.size()) repeat_acts(now);
+    repeat_acts();
     if (auto done = go_on_where_it_was_cut_off(); !done) return done;
     const std::size_t octets = pending_octets();
     if (octets < pending_octets_max) return {};
@@ -337,7 +330,7 @@ Result<void> Pipeline::accept(const telemetry::LinkState& link) {
 }
 
 Result<void> Pipeline::accept(const telemetry::EarthTime& time) {
-    if (auto room = state_->room(time.now); !room) return room;
+    if (auto room = state_->room(); !room) return room;
     std::vector<telemetry::StalenessChange> changes;
     state_->run->staleness.pass(time.now, changes);
     state_->add(changes, time.now);
@@ -390,7 +383,7 @@ Result<void> Pipeline::accept(archive::RequestRecord request) {
 }
 
 Result<void> Pipeline::accept(archive::StageRecord stage) {
-    if (auto room = state_->room(stage.ert); !room) return room;
+    if (auto room = state_->room(); !room) return room;
     auto& run = *state_->run;
     stage.seq = run.numbering.next(run.pending);
     run.pending.stages.push_back(std::move(stage));
@@ -401,7 +394,7 @@ Result<void> Pipeline::accept(archive::StageRecord stage) {
 /// Gives what was added to the batch to those who watch the run.
 void Pipeline::State::follow() {
     run->situation.follow(run->pending);
-    run->procedures.follow(run->pending);
+    run->procedures.follow(run->pending, run->intake.latest());
 }
 
 void Pipeline::State::take(const telemetry::ReceivedOctets& piece) {

@@ -73,11 +73,12 @@ class Pipeline {
     Result<RunId> begin(const archive::RunStart& start);
 
     /// What a run repeats up to the fork: items of another run, which `compare` reads, and what people added to it,
-    /// ascending by number.
+    /// ascending by number. Acts on procedures up to a second behind `until` are taken for acts before it.
     struct Repeated {
         RunId run;
         Compare compare;
         std::vector<archive::Annotation> annotations;
+        Ert until;  ///< the time on Earth of the fork
     };
     /// Begins a run that is another up to a fork. Until forked(), its items are compared with those of the other and
     /// stored with its annotations, but not published: they are a past that nobody sees happen.

@@ -100,7 +100,7 @@ void PipelineThread::perform(Action action) {
     if (taken) done.wait();
 }
 
-Result<archive::RunId> PipelineThread::begin(const archive::RunStart& start, archive::RunId of) {
+Result<archive::RunId> PipelineThread::begin(const archive::RunStart& start, archive::RunId of, Ert until) {
     auto reader = archive::Reader::open(archive_.file(), dictionary_);
     if (!reader) return reader.error();
     auto stored = std::make_shared<archive::Reader>(std::move(*reader));
@@ -108,7 +108,7 @@ Result<archive::RunId> PipelineThread::begin(const archive::RunStart& start, arc
     if (!annotations) return annotations.error();
     const auto compare = [stored](const pipeline::PublishedBatch& again) { return same_items(*stored, again); };
     Result<archive::RunId> run = Error{"the archive is closing"};
-    perform([&] { run = pipeline_.begin(start, {of, compare, std::move(*annotations)}); });
+    perform([&] { run = pipeline_.begin(start, {of, compare, std::move(*annotations), until}); });
     return run;
 }
 

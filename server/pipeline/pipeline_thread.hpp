@@ -59,7 +59,7 @@ class PipelineThread {
     /// Begins a run; waits until it is in the archive.
     Result<archive::RunId> begin(const archive::RunStart& start);
     /// Begins a run that is another up to a fork: see Pipeline::begin.
-    Result<archive::RunId> begin(const archive::RunStart& start, archive::RunId of);
+    Result<archive::RunId> begin(const archive::RunStart& start, archive::RunId of, Ert until);
     /// Waits until all deliveries were taken and stored. An Error when what was flown again differs.
     /// @return the number of the last item
     Result<archive::Sequence> forked();
@@ -103,9 +103,9 @@ class PipelineThread {
         pipeline::Pipeline::Acted outcome;
         std::string not_stored_yet{};  ///< taken, but the disk refuses it for now; empty: durable
     };
-    /// Takes a person's act on a procedure of the run in progress. Calls `done` on this thread once it is durable or the
-    /// disk refuses it for now, when it has no place, or with an Error: nothing can be taken. False, and nothing done,
-    /// when too much waits.
+    /// Takes a person's act on a procedure of the run in progress. Calls `done` on this thread once it is durable, when
+    /// the disk refuses it for now, when it has no place, or with an Error: nothing can be taken. False, and nothing
+    /// done, when too much waits.
     bool act(archive::RunId run, archive::ProcedureActRecord act, std::function<void(Result<Acted>)> done);
 
     /// Stores a forecast. Calls `done` on this thread with its number once it is durable, or with an Error. False, and

@@ -55,7 +55,7 @@ ProcedureFeed::ProcedureFeed(const dictionary::Dictionary& dictionary, const arc
                              const archive::RunStart& start)
     : dictionary_(dictionary), columns_(columns), board_(dictionary), prediction_(prediction_of(start)) {}
 
-void ProcedureFeed::follow(const archive::Batch& batch) {
+void ProcedureFeed::follow(const archive::Batch& batch, const std::vector<std::optional<LatestValue>>& latest) {
     if (batch.last_seq <= followed_) return;
     if (!batch.packets.empty())
         newest_ = std::max(newest_.value_or(batch.packets.back().ert), batch.packets.back().ert);
@@ -64,6 +64,8 @@ void ProcedureFeed::follow(const archive::Batch& batch) {
             if (sample.source == archive::Source::recorded) return;
             const auto& channels = columns_.channels(sample.packet);
             for (std::size_t column = 0; column < sample.values.count; ++column) {
+                const auto& newest = latest[channels[column].value];
+                if (newest && newest->sclk > sample.sclk) continue;
                 const double value = batch.values[sample.values.first + column];
                 board_.on(ChannelSample{channels[column], std::isnan(value) ? std::nullopt : std::optional{value},
                                         sample.ert});
@@ -179,11 +181,15 @@ Result<archive::ProcedureStatusRecord> ProcedureFeed::repeat(const archive::Proc
     } else if (auto taken = take(act); !taken) {
         return taken.error();
     }
+    ++acts_;
     return tell(number, act.ert);
 }
 
 Result<ProcedureFeed::Acted> ProcedureFeed::act(archive::ProcedureActRecord act,
                                                 const std::vector<std::optional<LatestValue>>& latest) {
+    if (acts_ >= acts_max)
+        return Error{
+            fmt::format("{} acts on procedures were taken in this run, which is as many as there may be", acts_max)};
     if (newest_) act.ert = std::clamp(act.ert, *newest_, Ert{newest_->microseconds + second_us});
     if (act.kind == archive::ProcedureActKind::begin) {
         act.number = static_cast<std::uint32_t>(told_.size() + 1);

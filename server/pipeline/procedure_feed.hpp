@@ -25,14 +25,16 @@ namespace aeolis::pipeline {
 /// Cost     before a procedure is begun, and when all are over, only events are noted
 class ProcedureFeed {
   public:
+    static constexpr std::size_t acts_max = 10'000;   ///< in a run; chosen: twenty for each procedure that there may be
     static constexpr double evidence_every_s = 10.0;  ///< chosen: a landing has some 200 statuses of a procedure then
 
     /// Dictionary and columns must outlive this object.
     ProcedureFeed(const dictionary::Dictionary& dictionary, const archive::PacketColumns& columns,
                   const archive::RunStart& start);
 
-    /// Takes the records that were added to the batch since the last call.
-    void follow(const archive::Batch& batch);
+    /// Takes the records that were added to the batch since the last call, of one packet at most. What is older than
+    /// `latest`, the newest value of its channel, came late and counts for nothing.
+    void follow(const archive::Batch& batch, const std::vector<std::optional<LatestValue>>& latest);
     /// @return the statuses that are to be told at `now`
     std::vector<archive::ProcedureStatusRecord> pass(Ert now);
     /// The same for the last time that was given: at the end of a run.
@@ -73,7 +75,8 @@ class ProcedureFeed {
     std::optional<server::procedures::EntryPrediction> prediction_;
     std::unordered_map<EvrId, Ert> events_;  ///< by event: its last receipt
     std::vector<Told> told_;                 ///< by number less one
-    std::size_t under_way_ = 0;              ///< procedures whose end was not told
+    std::size_t acts_ = 0;
+    std::size_t under_way_ = 0;  ///< procedures whose end was not told
     archive::Sequence followed_ = 0;
     std::optional<Ert> now_;     ///< the time on Earth that was given last
     std::optional<Ert> newest_;  ///< or of a packet since

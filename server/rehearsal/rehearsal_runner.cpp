@@ -50,6 +50,12 @@ bool comes_before(const archive::ForkPoint& fork, const archive::RequestRecord& 
     return is_fork(request) || archive::kept_request(request.request).has_plan();
 }
 
+/// The time on Earth at a cycle to come.
+Ert time_of_cycle(const Rehearsal& rehearsal, std::uint64_t cycle) {
+    const double from_now_s = static_cast<double>(cycle - rehearsal.cycles()) * seconds_per_tick;
+    return Ert{rehearsal.landing().ert_now().microseconds + std::llround(from_now_s * 1.0e6)};
+}
+
 }  // namespace
 
 void SendCommands::refuse(const std::string& reason) const {
@@ -300,7 +306,7 @@ Result<void> RehearsalRunner::fork(Rehearsal& rehearsal) {
     auto& parent = again_->run;
     const auto& at = *again_->fork;
     std::erase_if(parent.requests, [&](const archive::RequestRecord& each) { return !comes_before(at, each); });
-    const auto run = pipeline_.begin(start_, parent.run);
+    const auto run = pipeline_.begin(start_, parent.run, time_of_cycle(rehearsal, at.cycle));
     if (!run) return run.error();
     run_id_ = *run;
     spdlog::info("run {} begins as run {}, flown again up to E{:+.1f} s", run_id_.value, parent.run.value, at.e_s);

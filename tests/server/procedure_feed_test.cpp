@@ -381,7 +381,7 @@ TEST_CASE("a fork has the acts and statuses of its parent up to the fork, none f
 
     const auto annotations = ground.reader().annotations(first_run);
     REQUIRE(annotations->size() == 3);
-    REQUIRE(ground.pipeline->begin({}, {first_run, ground.compare(), *annotations}).ok());
+    REQUIRE(ground.pipeline->begin({}, {first_run, ground.compare(), *annotations, Ert{20 * second_us}}).ok());
     fly(1, 20);
     CHECK(ground.take(act(ProcedureActKind::begin, 0, 0), second_run) ==
           "run 2 is flown again up to where it was forked: try again when it goes on");
@@ -394,6 +394,55 @@ TEST_CASE("a fork has the acts and statuses of its parent up to the fork, none f
     CHECK(ground.take(act(ProcedureActKind::release, 1, 21 * second_us), second_run).empty());
     REQUIRE(ground.pipeline->commit().ok());
     CHECK(ground.reader().procedures(second_run)->front().procedure().held().empty());
+}
+
+TEST_CASE("in a silence around a fork the acts before it are repeated, and none from behind it", "[procedures][fork]") {
+    Ground ground;
+    REQUIRE(ground.pipeline->begin({}).ok());
+    const auto fly = [&] {
+        for (std::uint16_t second = 1; second < 5; ++second) {
+            ground.hear(second, second * second_us, 400.0F);
+            ground.pass(second * second_us);
+        }
+    };
+    const auto wait_until = [&](int end_s) {
+        for (int second = 5; second <= end_s; ++second) ground.pass(second * second_us);
+    };
+    fly();
+    REQUIRE(ground.take(act(ProcedureActKind::begin, 0, 5 * second_us)).empty());
+    wait_until(22);
+    REQUIRE(ground.take(act(ProcedureActKind::hold, 1, 22 * second_us)).empty());
+    wait_until(28);
+    REQUIRE(ground.take(act(ProcedureActKind::release, 1, 28 * second_us)).empty());
+    REQUIRE(ground.pipeline->finish({}).ok());
+
+    const auto annotations = ground.reader().annotations(first_run);
+    REQUIRE(annotations->size() == 3);
+    REQUIRE(ground.pipeline->begin({}, {first_run, ground.compare(), *annotations, Ert{25 * second_us}}).ok());
+    fly();
+    wait_until(25);
+    REQUIRE(ground.pipeline->forked().ok());
+    CHECK(ground.reader().procedure_acts(second_run, 1)->size() == 2);
+    CHECK(ground.reader().procedures(second_run)->front().procedure().held() == "A. Ng (gnc): because");
+    CHECK(ground.take(act(ProcedureActKind::release, 1, 26 * second_us), second_run).empty());
+}
+
+TEST_CASE("a value that comes late, behind a newer one of its channel, counts in no condition", "[procedures]") {
+    Ground ground;
+    REQUIRE(ground.pipeline->begin({}).ok());
+    ground.hear(1, second_us, 400.0F);
+    REQUIRE(ground.take(act(ProcedureActKind::begin, 0, second_us)).empty());
+    ground.hear(10, 3 * second_us, 450.0F);
+    ground.hear(5, 4 * second_us, 600.0F);
+    ground.pass(5 * second_us);
+    const auto state = [&] {
+        REQUIRE(ground.pipeline->commit().ok());
+        return ground.reader().procedures(first_run)->front().procedure().steps(0).state();
+    };
+    CHECK(state() == v1::ProcedureStep::active);
+    ground.hear(11, 6 * second_us, 600.0F);
+    ground.pass(7 * second_us);
+    CHECK(state() == v1::ProcedureStep::checked);
 }
 
 }  // namespace server_procedure_feed_test

@@ -113,6 +113,21 @@ TEST_CASE("what is not an archive is refused by name and left as it was", "[arch
         CHECK(Archive::open(file).error().message == line);
         CHECK(Reader::open(file, test::small_dictionary()).error().message == line);
     }
+    SECTION("an archive of a build without procedures") {
+        const auto file = folder / "older.db";
+        REQUIRE(Archive::open(file).ok());
+        {
+            auto older = sqlite::Database::open(file.string(), sqlite::Mode::read_write_create);
+            REQUIRE(
+                older->execute("PRAGMA writable_schema = 1; DELETE FROM sqlite_schema WHERE name = 'procedure_acts'")
+                    .ok());
+        }
+        const std::string line = file.string() +
+                                 " was written by a build of before 0.2.0, without tables for procedures: open it with "
+                                 "the Aeolis that wrote it, or name another file";
+        CHECK(Archive::open(file).error().message == line);
+        CHECK(Reader::open(file, test::small_dictionary()).error().message == line);
+    }
     SECTION("a mark without tables") {
         const auto file = folder / "marked.db";
         {

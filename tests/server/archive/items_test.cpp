@@ -3,6 +3,7 @@
 
 #include "aeolis/v1/alarms.pb.h"
 #include "server/archive/item_tables.hpp"
+#include "server/archive/procedure_status.hpp"
 #include "tests/support/catch.hpp"
 
 namespace server_archive_items_test {
@@ -55,6 +56,23 @@ TEST_CASE("a verdict on a firing that no schema names is unknown, never another"
     CHECK(archive::firing_verdict("no_operation") == archive::FiringVerdict::no_operation);
     CHECK(archive::firing_verdict("timed_out") == archive::FiringVerdict::unknown);
     CHECK(archive::firing_verdict("") == archive::FiringVerdict::unknown);
+}
+
+TEST_CASE("a status whose octets are damaged says so, and of which procedure it was", "[archive][procedures]") {
+    archive::ProcedureStatusRecord record;
+    record.number = 3;
+    record.procedure = "start";
+    record.held = "Ada (gnc): not yet";
+    v1::ProcedureStatus status;
+    status.set_number(3);
+    status.set_title("Start");
+    record.status = archive::packed(status);
+    CHECK(archive::to_item(record).procedure().title() == "Start");
+    record.status.pop_back();
+    const auto damaged = archive::to_item(record).procedure();
+    CHECK(damaged.number() == 3);
+    CHECK(damaged.title() == "the status of procedure start cannot be read: its octets in the archive are damaged");
+    CHECK(damaged.held() == "Ada (gnc): not yet");
 }
 
 }  // namespace server_archive_items_test
