@@ -88,19 +88,11 @@ test('a procedure is begun, its steps check themselves, are signed, released and
   await shows('command-message', /EDL_SET_PARAMETERS is #1/);
   await waitFor(() => state(page, 'send_parameters'), /checked/);
 
-  // Against its conditions a step is ticked with a reason alone.
   await become(page, 'GNC');
   await does(page, 'sign', 'held_on_board');
   await waitFor(() => state(page, 'held_on_board'), /checked/);
-  await become(page, 'Flight director');
+  await waitFor(() => state(page, 'late_cruise'), /checked/);
   await control(server, { pause: true });
-  if ((await state(page, 'late_cruise')) === 'active') {
-    await does(page, 'tick', 'late_cruise');
-    await page.getByTestId('procedure-reason').waitFor();
-    await page.keyboard.type('told on the loop');
-    await page.keyboard.press('Enter');
-  }
-  await waitFor(() => state(page, 'late_cruise'), /ticked|checked/);
   await page.getByTestId('procedure-history').locator('summary').click();
   await shows('procedure-history', /begin[^]*sign solution[^]*release send parameters[^]*sent send parameters as #1/);
   await page.keyboard.press('Escape');
@@ -111,7 +103,7 @@ test('a procedure is begun, its steps check themselves, are signed, released and
   const signed_us = acts.find(({ procedure_act: { kind } }) => kind === 'sign').ert_us;
   const before_e_s = clocks.e_s - (clocks.ert_us - signed_us) / 1e6 - 0.5;
   const other = await open(`${server.address}/?panel=procedures`);
-  await waitFor(() => state(other.page, 'late_cruise'), /ticked|checked/);
+  await waitFor(() => state(other.page, 'late_cruise'), /checked/);
   assert.deepEqual(await findings(other.page, 'dark'), []);
   await other.page.getByTestId('procedures-library').click();
   await other.shows('procedure-library', /UHF lost/);
@@ -123,6 +115,30 @@ test('a procedure is begun, its steps check themselves, are signed, released and
     [await state(other.page, 'send_parameters'), await other.page.locator('[data-act]').count()],
     ['waiting', 0],
   );
+
+  // Against its conditions a step is ticked with a reason alone: nothing has touched down yet.
+  await other.page.goto(`${server.address}/?panel=procedures`);
+  await waitFor(() => state(other.page, 'late_cruise'), /checked/);
+  await become(page, 'Flight director');
+  await panel(page);
+  await goTo(page, () => document.activeElement?.closest('.table-tools') !== null, 'ArrowUp');
+  await goTo(page, () => document.activeElement?.dataset.testid === 'procedures-library', 'Tab');
+  await page.keyboard.press('Enter');
+  await page.locator('[data-procedure="day_after"]').waitFor();
+  await panel(page);
+  await goTo(page, () => document.activeElement?.closest('[data-procedure="day_after"]') !== null, 'ArrowDown');
+  await page.keyboard.press('Enter');
+  await waitFor(() => state(page, 'touchdown'), /active/);
+  await does(page, 'tick', 'touchdown');
+  await page.getByTestId('procedure-reason').waitFor();
+  await page.keyboard.type('told on the loop');
+  await page.keyboard.press('Enter');
+  await waitFor(() => state(page, 'touchdown'), /ticked/);
+  // the stream brings it to a page that shows another procedure, and asked for them before
+  await other.page.getByTestId('procedure-2').click();
+  await waitFor(() => state(other.page, 'touchdown'), /ticked/);
+  await other.page.locator('[data-step="touchdown"] .step-name').click();
+  await other.shows('procedure', /ticked by Ann \(flight director\)[^]*told on the loop/);
   assert.deepEqual(other.problems, []);
   await other.page.close();
   assert.deepEqual(problems, []);

@@ -7,6 +7,7 @@ import type { Status } from '../design/status';
 import { Refused, wordsFor } from '../run/api';
 import { change, read } from '../run/connection';
 import { cutoff, pastRange, signalOfRun, store, tick } from '../run/shown';
+import type { RunStore } from '../run/store';
 import { myName, position } from './position';
 
 export type ActKind = 'tick' | 'sign' | 'choose' | 'skip' | 'sent' | 'hold' | 'release' | 'acknowledge' | 'stop';
@@ -158,16 +159,18 @@ interface Answer {
   all: StatusItem[];
 }
 const answer = signalOfRun<Answer | undefined>(undefined);
-let asked: { run: object; at: number; version: number; ms: number } | undefined;
+let asked: { run: object; at: number; ms: number } | undefined;
 let asking = false;
 
-/** Asks for the statuses if there may be others: after an item about them, or at another instant. */
+/** Asks for the statuses once, and again at another instant. Those of now are renewed by the stream, each whole. */
 export async function refreshProcedures(): Promise<void> {
   const run = store.value;
-  if (!run || asking) return;
-  const now = { run, at: cutoff.value, version: run.proceduresVersion, ms: performance.now() };
+  if (!run) return;
+  takeHeard(run);
+  if (asking) return;
+  const now = { run, at: cutoff.value, ms: performance.now() };
   if (asked?.run === now.run) {
-    if (asked.at === now.at && asked.version === now.version) return;
+    if (asked.at === now.at) return;
     // an instant that moves on is followed at a pace; one in another view is asked for at once
     if (asked.at < now.at && now.at !== Infinity && now.ms - asked.ms < REPLAY_MS) return;
   }
@@ -177,6 +180,7 @@ export async function refreshProcedures(): Promise<void> {
     const list = await read<{ procedures: StatusItem[] }>(`/runs/${run.id}/procedures${at}`);
     asked = now;
     if (store.value === run) answer.value = { at: now.at, all: list.procedures };
+    takeHeard(run);
   } catch (error) {
     if (error instanceof Refused && [400, 404].includes(error.status)) {
       asked = now; // a server, or a run, without procedures
@@ -201,13 +205,20 @@ export function isOpen(): boolean {
   return pastRange.value === undefined && store.value?.going === true;
 }
 
-/** Puts an answer in the place of the status that it renews. */
+/** Takes what the stream brought of the run shown. */
+function takeHeard(run: RunStore): void {
+  if (store.value !== run) return;
+  for (const { seq, status } of run.procedures.values())
+    take({ seq: String(seq), procedure: status as unknown as Execution });
+}
+
+/** Puts a status of now in the place of an older one of the same procedure. */
 function take(item: StatusItem): void {
   const known = answer.value;
   if (known?.at !== Infinity) return;
   const { number } = item.procedure;
   const before = known.all.find((each) => each.procedure.number === number);
-  if (before && Number(before.seq) > Number(item.seq)) return;
+  if (before && Number(before.seq) >= Number(item.seq)) return;
   const others = known.all.filter((each) => each !== before);
   const all = [...others, item].sort((one, other) => one.procedure.number - other.procedure.number);
   answer.value = { ...known, all };
@@ -261,19 +272,6 @@ export async function act(number: number, deed: Deed): Promise<boolean> {
   };
   const what = `${kind}${step && ` of ${step.replaceAll('_', ' ')}`}`;
   return (await send(`/${number}/acts`, body, `${what}: not done`)) !== undefined;
-}
-
-const HEARD_MS = 5000; // chosen: a command is on the stream as soon as it is stored
-const LOOK_MS = 50;
-
-/**
- * Tells a step that its command was sent by this number, once the stream has it: until then the server may not know it.
- */
-export async function tie(number: number, deed: Deed & { command: number }): Promise<boolean> {
-  const run = store.value;
-  for (let waited = 0; waited < HEARD_MS && !run?.commands.has(deed.command); waited += LOOK_MS)
-    await new Promise((resolve) => setTimeout(resolve, LOOK_MS));
-  return store.value === run && (await act(number, deed));
 }
 
 /** What was done with it, oldest first. */

@@ -14,16 +14,17 @@ export function choosePosition(chosen: string): void {
   else localStorage.setItem(KEPT, chosen);
 }
 
-/** "edl_communications" → "EDL communications". */
-export const positionWords = (name: string): string =>
-  name
-    .replaceAll('_', ' ')
-    .replace(/\b(edl|gnc)\b/g, (word) => word.toUpperCase())
-    .replace(/^./, (letter) => letter.toUpperCase());
+const inWords = (name: string): string =>
+  name.replaceAll('_', ' ').replace(/\b(edl|gnc)\b/g, (word) => word.toUpperCase());
 
-/** "A. Ng (flight_director)" → "A. Ng (flight director)". */
-export const byWords = (by: string): string =>
-  by.replaceAll('_', ' ').replace(/\b(edl|gnc)\b/g, (word) => word.toUpperCase());
+/** "edl_communications" → "EDL communications". */
+export const positionWords = (name: string): string => inWords(name).replace(/^./, (letter) => letter.toUpperCase());
+
+/**
+ * "a_ng (flight_director): by_hand" → "a_ng (flight director): by_hand". The names of positions and watchdogs are ids;
+ * names of people and reasons stay as they were written.
+ */
+export const byWords = (by: string): string => by.replace(/^watchdog \w+$|\([a-z_]+\)(?=:|$)/, (id) => inWords(id));
 
 /** The name with which this browser's acts are signed. */
 export const myName = (): string => (access.value.state === 'in' ? access.value.user : uplink.value.controller.trim());

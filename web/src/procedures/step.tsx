@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One step of a procedure: its state, who does it, what it waits for by which evidence, and what can be done now.
 import { signal } from '@preact/signals';
-import { useEffect, useRef } from 'preact/hooks';
+import { useLayoutEffect, useRef } from 'preact/hooks';
 import { prepare, step as lineStep } from '../commands/line';
 import { STATUS } from '../design/status';
 import { cutoff, pastRange, runNow, signalOfRun, store, takesCommands } from '../run/shown';
@@ -20,7 +20,6 @@ import {
   isOver,
   offered,
   problem,
-  tie,
 } from './model';
 import type { ActKind, Condition, Deed, Execution, Prepared, Signature, Step } from './model';
 import { byWords, lacking, position, positionWords } from './position';
@@ -127,7 +126,7 @@ export function Reason({ number, place }: { number: number; place: string }) {
   const wants = wanting.value;
   const input = useRef<HTMLInputElement>(null);
   const isHere = wants?.number === number && (wants.deed.step ?? '') === place;
-  useEffect(() => {
+  useLayoutEffect(() => {
     if (isHere) input.current?.focus();
   }, [isHere, wants]);
   if (!wants || !isHere) return null;
@@ -203,12 +202,15 @@ function openCommand(one: Execution, step: Step, command: Prepared, why: string)
     words: `step ${inWords(step.step)} of ${one.title}`,
     given: new Map(command.arguments.map(({ name, text }) => [name, text])),
     fromSolution: command.from_solution,
-    sent: (number) =>
-      void tie(one.number, { kind: 'sent', step: step.step, command: number, reason: why }).then((taken) => {
+    // a command is stored before it is answered, so the server knows the number
+    sent: (number) => {
+      if (store.value !== run) return; // it is tied to the step by hand
+      void act(one.number, { kind: 'sent', step: step.step, command: number, reason: why }).then((taken) => {
         if (taken || store.value !== run) return;
         const untold = `number ${number} was sent, and the step does not know it: tie it to the step here`;
         problem.value = problem.value === '' ? untold : `${problem.value}; ${untold}`;
-      }),
+      });
+    },
   });
 }
 

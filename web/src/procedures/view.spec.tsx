@@ -7,17 +7,19 @@ import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import { access } from '../access/model';
 import { back, forward, line, otherwise, purposeNow, step as lineStep, tryOut, type, uplink } from '../commands/line';
 import { AT_ONCE } from '../commands/model';
+import { ProcedureAct_Kind, ProcedureStatusSchema, ProcedureStep_State } from '../gen/aeolis/v1/procedures_pb';
 import { CommandReplySchema } from '../gen/aeolis/v1/run_pb';
 import { stream } from '../run/connection';
 import { onMessage, useForTest } from '../run/session';
 import { lookAtPast, pastRange, store, tick } from '../run/shown';
 import type { ToWorker } from '../stream/messages';
-import { aDictionary, aRun, aStore, stage } from '../testing/fixtures';
+import { ColumnCollector } from '../stream/columns';
+import { aBatch, aDictionary, aRun, aStore, item, stage } from '../testing/fixtures';
 import { aStep, aWatchdog, anExecution, inItem, us } from '../testing/procedures';
 import { aServer } from '../testing/server';
 import { act, executions, library, lookOf, offered, offeredOfWhole, problem, refreshProcedures } from './model';
 import type { Execution } from './model';
-import { choosePosition, position } from './position';
+import { byWords, choosePosition, position, positionWords } from './position';
 import { show, shownNow } from './shown';
 import { untied, wanting } from './step';
 import { UnderWay } from './under_way';
@@ -127,6 +129,52 @@ describe('a procedure under way', () => {
       ['is missing', 'seen does_not_hold'],
       ['not known', 'seen not_known'],
     ]);
+  });
+  it('is renewed by the stream, whose status is as the server answers it; nothing is asked for again', async () => {
+    const steps = [aStep('poll', { state: 'active', acts: ['tick'] })];
+    answers(anExecution({ steps }));
+    await shows();
+    expect(root.querySelector('[data-step="poll"]')?.getAttribute('data-state')).toBe('active');
+    const status = (number: number, state: ProcedureStep_State, by = '') =>
+      create(ProcedureStatusSchema, {
+        number,
+        procedure: 'poll',
+        title: `Poll ${number}`,
+        revision: 1,
+        begunUs: BigInt(us('2012-219T04:50:00.0')),
+        begunBy: 'Ann (flight_director)',
+        part: 1,
+        steps: [{ step: 'poll', part: 1, who: 'gnc', text: 'Do poll.', state, by }],
+        acts: [ProcedureAct_Kind.hold, ProcedureAct_Kind.stop],
+      });
+    const at = '2012-219T05:00:00.0';
+    const heard = [
+      status(2, ProcedureStep_State.active),
+      status(1, ProcedureStep_State.active),
+      status(1, ProcedureStep_State.ticked, 'Ben (gnc)'),
+    ].map((value) => item({ case: 'procedure', value }, at));
+    const collector = new ColumnCollector();
+    collector.add(aBatch(heard));
+    const { facts } = collector.take();
+    expect(facts.map(({ kind, seq, fact }) => [kind, seq, (fact as { number: number }).number])).toEqual([
+      ['procedure', Number(heard[0]?.seq), 2],
+      ['procedure', Number(heard[2]?.seq), 1], // the older one of the same procedure is left out
+    ]);
+    collector.add(aBatch(heard));
+    const before = server.asked.length;
+    store.value?.add(collector.take());
+    await refreshProcedures();
+    expect(server.asked.length).toBe(before);
+    const poll = aStep('poll', { state: 'ticked', by: 'Ben (gnc)' });
+    expect(executions.value).toEqual([
+      anExecution({ title: 'Poll 1', steps: [poll] }),
+      anExecution({ number: 2, title: 'Poll 2', steps: [{ ...poll, state: 'active', by: '' }] }),
+    ]);
+    // an answer of before does not put the older one back
+    server.routes['POST /runs/1/procedures/1/acts'] = { status: 201, json: inItem(anExecution({ steps }), 1) };
+    choosePosition('gnc');
+    await act(1, { kind: 'tick', step: 'poll' });
+    expect(executions.value?.[0]?.steps).toEqual([poll]);
   });
   it('counts a time limit down by the clock of the run, and says by how much a step is late', async () => {
     const limits = 'within 120 s';
@@ -282,9 +330,6 @@ describe('the command of a step', () => {
     await tryOut();
     server.routes['POST /runs/1/procedures/1/acts'] = { status: 201, json: inItem(anExecution({ steps: [step] }), 2) };
     await forward();
-    expect(posted()).toEqual([]); // the server may not know it before the stream has it
-    const queued = stage({ command: 7n, name: command.name, ert: '2012-219T05:00:00.0' });
-    store.value?.commands.set(7, aStore([queued]).commands.get(7)!);
     expect(heard.at(-1)?.intent.dryRun).toBeUndefined();
     await vi.waitFor(() => expect(posted()).toHaveLength(1));
     const said = { position: 'command', by: 'Ann', reason: '' };
@@ -401,6 +446,15 @@ it('what holds a procedure is released by whoever holds it, or by the flight dir
   uplink.value = { ...AT_ONCE, controller: 'An' };
   expect(offeredOfWhole(one, 'systems')).toEqual([]);
   expect(offeredOfWhole(one, 'flight_director')).toEqual(['release', 'stop']);
+});
+it('a position is written in words; a name and a reason stay as they were written', () => {
+  expect(byWords('a_ng (flight_director)')).toBe('a_ng (flight director)');
+  expect(byWords('A. Ng (gnc): wait for edl_phase (see edl_log)')).toBe(
+    'A. Ng (GNC): wait for edl_phase (see edl_log)',
+  );
+  expect(byWords('Ann (on_call) (edl_communications)')).toBe('Ann (on_call) (EDL communications)');
+  expect(byWords('watchdog tones_too')).toBe('watchdog tones too');
+  expect(positionWords('edl_communications')).toBe('EDL communications');
 });
 it('an act is offered to whom it belongs, and the director in his place', () => {
   const acts = ['tick', 'sign', 'skip', 'sent', 'release'] as const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // All data that the page holds of one run, filled by the stream and read by every panel. Each run has its own store, so
 // that no data of one run appear in another.
+import type { JsonValue } from '@bufbuild/protobuf';
 import type { Clocks, Explanation, Staleness, Packet } from '../gen/aeolis/v1/items_pb';
 import { SOURCE_RECORDED } from '../stream/columns';
 import type { BatchOfFacts, Column, Fact, Newest } from '../stream/messages';
@@ -142,6 +143,8 @@ export class RunStore {
   alarmsVersion = 0;
   notesVersion = 0;
   proceduresVersion = 0;
+  /** The newest status of each procedure that the stream brought, by its number. */
+  procedures = new Map<number, { seq: number; status: JsonValue }>();
   /** Counts items on which the prediction of the timeline depends: firings, tones, stages of commands. */
   timelineVersion = 0;
   /** Newest SCLK of all samples, events and tones. */
@@ -431,7 +434,6 @@ export class RunStore {
     if (item.kind === 'event' || item.kind === 'tone') this.sawSclk(item.fact.sclk);
     if (ABOUT_ALARMS.has(item.kind) || this.isAboutLoss(item)) ++this.alarmsVersion;
     if ((item.kind as string) === 'note') ++this.notesVersion;
-    if ((item.kind as string) === 'procedure') ++this.proceduresVersion;
     if (ABOUT_TIMELINE.has(item.kind)) ++this.timelineVersion;
     switch (item.kind) {
       case 'event':
@@ -449,6 +451,10 @@ export class RunStore {
       case 'tone':
         // It is decided some time after its end; items with lower numbers were known by then.
         this.tones.push({ ...item, known_s: later(item.ert_s, this.newestErt_s) });
+        break;
+      case 'procedure':
+        this.procedures.set(item.fact.number, { seq: item.seq, status: item.fact.status });
+        ++this.proceduresVersion;
         break;
       case 'timepoint':
         this.addFiring(item.fact);

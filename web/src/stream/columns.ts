@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Converts the stream's batches to columns: one series of samples per channel, and facts in order of sequence number.
+// Converts the stream's batches to columns: one series of samples per channel, facts in order of sequence number, and
+// after them the newest status of each procedure.
+import { toJson } from '@bufbuild/protobuf';
 import type { Samples } from '../gen/aeolis/v1/items_pb';
+import type { ProcedureStatus } from '../gen/aeolis/v1/procedures_pb';
 import type { Batch } from '../gen/aeolis/v1/stream_pb';
+import { ProcedureStatusSchema } from '../gen/worker/aeolis/v1/procedures_pb';
 import { secondsOfErt } from '../run/time';
 import type { BatchOfFacts, Column, Fact, Newest } from './messages';
 import { named } from './names';
@@ -19,6 +23,8 @@ class GrowingColumn {
 export class ColumnCollector {
   private columns = new Map<string, GrowingColumn>();
   private facts: Fact[] = [];
+  /** The newest status of each procedure: each is whole, and a long run has thousands. */
+  private procedures = new Map<number, { seq: number; ert_s: number; status: ProcedureStatus }>();
   private thinned = false;
   private clocks: BatchOfFacts['clocks'];
   private completeThrough = 0;
@@ -41,6 +47,8 @@ export class ColumnCollector {
       if (kind === 'samples') {
         this.thinned ||= value.thinned;
         this.addSamples(value, secondsOfErt(item.ertUs));
+      } else if (kind === 'procedure') {
+        this.procedures.set(value.number, { seq, ert_s: secondsOfErt(item.ertUs), status: value });
       } else {
         this.facts.push({ kind, seq, ert_s: secondsOfErt(item.ertUs), fact: named(item.item) } as Fact);
       }
@@ -62,17 +70,25 @@ export class ColumnCollector {
     const taken: BatchOfFacts = {
       run: this.run,
       completeThrough: this.completeThrough,
-      facts: this.facts,
+      facts: [...this.facts, ...this.statuses()],
       columns,
       thinned: this.thinned,
       clocks: this.clocks,
     };
     this.columns = new Map();
     this.facts = [];
+    this.procedures = new Map();
     this.thinned = false;
     this.clocks = undefined;
     this.any = false;
     return taken;
+  }
+
+  private statuses(): Fact[] {
+    return [...this.procedures].map(([number, { seq, ert_s, status }]) => {
+      const json = toJson(ProcedureStatusSchema, status, { useProtoFieldName: true, alwaysEmitImplicit: true });
+      return { kind: 'procedure', seq, ert_s, fact: { number, status: json } };
+    });
   }
 
   private addSamples({ sclk, ids, values, source, exact, sclkByReception }: Samples, ert_s: number): void {

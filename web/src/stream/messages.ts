@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Messages between the page and its worker, as plain data. Sequence and run numbers are JavaScript numbers, exact up to
 // 2^53.
+import type { JsonValue } from '@bufbuild/protobuf';
 import type { Clocks, Explanation, Staleness, Packet } from '../gen/aeolis/v1/items_pb';
 import type { CommandReply } from '../gen/aeolis/v1/run_pb';
 import type {
@@ -48,7 +49,14 @@ export type Fact = { seq: number; ert_s: number } & (
   | { kind: 'alarm'; fact: NamedAlarm }
   | { kind: 'unit'; fact: Packet }
   | { kind: 'situation'; fact: NamedSituation }
+  | { kind: 'procedure'; fact: ProcedureFact }
 );
+
+/** The whole status of a procedure: `status` is a ProcedureStatus as JSON, just as the API has it. */
+export interface ProcedureFact {
+  number: number;
+  status: JsonValue;
+}
 
 export interface BatchOfFacts {
   run: number;

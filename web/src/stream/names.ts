@@ -78,9 +78,8 @@ export function named(item: Item['item']) {
       return {
         entries: item.value.entries.map((entry) => ({ ...entry, rank: nameOf(SituationEntry_Rank, entry.rank) })),
       };
-    case 'procedure':
     case 'procedureAct':
-      return {}; // the page asks for what it shows of procedures
+      return {}; // the page asks for what it shows of these
     default:
       return item.value;
   }
