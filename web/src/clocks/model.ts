@@ -82,14 +82,21 @@ function lineOf(name: string, look: LinkLook, reason: string): LinkLine {
 
 /** A link that the plan has off: it stands in the header once it is due, and X-band's telemetry until tones follow it. */
 const isOff = (link: string, { look, silence }: LinkLine): boolean =>
-  look === 'down' && (silence === 'not_begun' || (link === 'x_band_telemetry' && silence === 'switched_off'));
+  ['down', 'unknown'].includes(look) &&
+  (silence === 'not_begun' || (link === 'x_band_telemetry' && silence === 'switched_off'));
 
-/** Without a connection the present state of a link is unknown; a past view still knows it. */
+/**
+ * Without a connection the present state of a link is unknown; a past view still knows it. Its last silence stays, so
+ * that no link that was off appears just then.
+ */
 export function linksOf(store: RunStore, cutoff: number, lost = false): LinkLine[] {
   return [...store.links].map(([link, changes]) => {
-    if (lost && cutoff === Infinity && store.going) return lineOf(linkTitle(link), 'unknown', 'no connection');
     const until = changes.filter((change) => !(store.sclkSeenAt(change.ert_s) > cutoff));
     const last = until[until.length - 1]?.fact;
+    if (lost && cutoff === Infinity && store.going) {
+      const unknown = lineOf(linkTitle(link), 'unknown', 'no connection');
+      return { ...unknown, short: STATES.unknown, silence: last?.silence }; // why stands beside it, once
+    }
     return last
       ? { ...lineOf(linkTitle(link), linkLook(last), last.reason), silence: last.silence }
       : lineOf(linkTitle(link), 'unknown', 'not heard of yet');

@@ -58,7 +58,7 @@ describe('the header', () => {
   it('knows nothing of a link while nothing comes, but of the past what it was', () => {
     const store = aStore([link({ link: 'uhf_live', up: true, ert: '2012-219T04:59:00.0' })]);
     expect([linksOf(store, Infinity, true)[0], linksOf(store, 890, true)[0]?.look]).toEqual([
-      { name: 'UHF', look: 'unknown', detail: 'not known: no connection', short: 'not known: no connection' },
+      { name: 'UHF', look: 'unknown', detail: 'not known: no connection', short: 'not known' },
       'up',
     ]);
   });
@@ -93,7 +93,7 @@ describe('the header', () => {
         : reason.startsWith('switched off')
           ? LinkChange_Silence.switched_off
           : LinkChange_Silence.unexplained;
-    const of = (uhf: string, telemetry: string) =>
+    const of = (uhf: string, telemetry: string, lost = false) =>
       headerLinks(
         aStore(
           [
@@ -104,9 +104,11 @@ describe('the header', () => {
           ),
         ),
         Infinity,
+        lost,
       ).map((line) => line.name);
     expect(of('not begun: planned at E−13:20', '')).toEqual(['X-band telemetry']);
     expect(of('', 'switched off: X-band sends tones from E−12:30')).toEqual(['UHF']);
+    expect(of('', 'switched off: X-band sends tones from E−12:30', true)).toEqual(['UHF']); // nor does a lost connection
     expect(of('switched off: planned at E+7:30', 'unexplained: nothing is predicted to silence it now')).toEqual([
       'UHF',
       'X-band telemetry',
