@@ -23,6 +23,7 @@ export const pointed = signal<{ on: HTMLElement; x: number; y: number } | undefi
 const VALUES = '[data-menu]';
 const LONG_PRESS_MS = 500; // chosen: as browsers do
 const STILL_PX = 10; // chosen: a finger that moves more scrolls
+const BESIDE_PX = 10; // the button stands out by a little less
 
 const menuAt = (target: EventTarget | null): HTMLElement | undefined =>
   (target instanceof Element && target.closest<HTMLElement>(VALUES)) || undefined;
@@ -139,7 +140,19 @@ function onPoint(event: PointerEvent): void {
   const on = under?.matches('.panel-head[data-menu^="panel"]') ? undefined : under; // its right end has controls
   if (on === pointed.peek()?.on || (event.target instanceof Element && event.target.closest('.menu-button'))) return;
   const box = on?.getBoundingClientRect();
-  pointed.value = on && box ? { on, x: box.right / scale(), y: (box.top + box.height / 2) / scale() } : undefined;
+  pointed.value =
+    on && box ? { on, x: rightInSight(on, box) / scale(), y: (box.top + box.height / 2) / scale() } : undefined;
+}
+
+/** The right end of what is in sight of a value: the row of a wide table goes on beyond its panel. */
+function rightInSight(on: HTMLElement, { right }: DOMRect): number {
+  const ends = [right, innerWidth - BESIDE_PX];
+  for (let around = on.parentElement; around; around = around.parentElement) {
+    const { display, overflowX } = getComputedStyle(around);
+    if (display !== 'contents' && /auto|scroll|hidden|clip/.test(overflowX))
+      ends.push(around.getBoundingClientRect().right);
+  }
+  return Math.min(...ends);
 }
 
 let pressed: ReturnType<typeof setTimeout> | undefined;
@@ -159,6 +172,7 @@ export function listenForMenus(): void {
   document.addEventListener('keydown', onValueKey, true);
   document.addEventListener('pointerover', onPoint);
   document.addEventListener('scroll', () => (pointed.value = undefined), { capture: true, passive: true });
+  window.addEventListener('resize', () => (pointed.value = undefined));
   document.addEventListener('pointerdown', onPress);
   document.addEventListener('pointerup', release);
   document.addEventListener('pointercancel', release);

@@ -14,7 +14,7 @@ import { aDictionary, aStore, alarm, samples, tone } from '../testing/fixtures';
 import { aServer } from '../testing/server';
 import { itemsOf } from './items';
 import type { Item } from './items';
-import { closeMenu, focusValue, listenForMenus, openOn, onValueKey, openedMenu } from './model';
+import { closeMenu, focusValue, listenForMenus, openOn, onValueKey, openedMenu, pointed } from './model';
 import { MenuView } from './view';
 import { limitLines, sampleLines } from './why';
 
@@ -246,5 +246,28 @@ describe('by touch and by mouse', () => {
     expect(opens(() => void click(field))).toBeUndefined();
     expect(opens(() => void click(page))).toBeUndefined();
     vi.useRealTimers();
+  });
+  it('the button beside the value under the mouse is at the right end of what is in sight of it, and gone when that moves', () => {
+    const [row, other] = [value('1'), value('3')];
+    const isAt = (element: Element, right: number) => {
+      element.getBoundingClientRect = () =>
+        ({ left: 0, top: 100, right, bottom: 120, width: right, height: 20 }) as DOMRect;
+    };
+    const point = (on: Element) => {
+      on.dispatchEvent(new PointerEvent('pointerover', { pointerType: 'mouse', bubbles: true }));
+      return pointed.value && [pointed.value.x, pointed.value.y];
+    };
+    const panel = document.getElementById('one')!;
+    isAt(panel, 600);
+    isAt(row, 300);
+    isAt(other, 5000);
+    expect(point(row)).toEqual([300, 110]);
+    expect(point(page)).toBeUndefined();
+    isAt(row, 1390); // a row of a table that is wider than its panel
+    panel.style.overflowX = 'auto';
+    expect(point(row)).toEqual([600, 110]);
+    expect(point(other)).toEqual([innerWidth - 10, 110]);
+    window.dispatchEvent(new Event('resize'));
+    expect(pointed.value).toBeUndefined();
   });
 });
