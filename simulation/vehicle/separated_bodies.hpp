@@ -12,11 +12,19 @@
 
 namespace aeolis::simulation {
 
-/// A jettisoned body: a point with drag in the vehicle's air and wind, until it lies on the ground.
+/// Lift of the parachute that a body keeps: the plane goes on turning as before, see parachute_lift_direction.
+struct ParachuteLift {
+    Vector3 right_at_mortar_M = Vector3::UnitZ();
+    double since_mortar_s = 0.0;  ///< at the release
+    double from_up_rad = 0.0;
+};
+
+/// A jettisoned body: a point with drag in the vehicle's air and wind, until it lies on the ground. Below its parachute
+/// it also has the parachute's lift, so that it glides on.
 ///
 /// Also measures how close the vehicle, or the rover on its bridle, comes to it after separation.
 /// Rate     a step each 1/16 s of its own time; the vehicle's position each 1/64 s           Memory   constant
-/// Left out lift, tumbling, disturbance of each other's air
+/// Left out tumbling, lift without a parachute, disturbance of each other's air
 class SeparatedBody {
   public:
     /// It is clear of the vehicle at `clear_m`. It has struck the vehicle when it comes within `size_m` after that, or
@@ -24,7 +32,8 @@ class SeparatedBody {
     SeparatedBody(double size_m, double clear_m) : size_m_(size_m), clear_m_(clear_m) {}
 
     /// Releases the body with the state `at`. Call once.
-    void release(const PointMass& at, double mass_kg, double drag_area_m2);
+    void release(const PointMass& at, double mass_kg, double drag_area_m2,
+                 const std::optional<ParachuteLift>& lift = {});
     /// Advances by one tick. The vehicle is now at `p_MoB_M`; `rover`: its state while it hangs on the bridle.
     void tick(const Vector3& p_MoB_M, const std::optional<PointMass>& rover, const Atmosphere& atmosphere,
               const Wind& wind, const Terrain& terrain);
@@ -44,6 +53,7 @@ class SeparatedBody {
 
     double size_m_, clear_m_;
     double mass_kg_ = 1.0, drag_area_m2_ = 0.0;
+    std::optional<ParachuteLift> lift_;
     PointMass at_;
     double since_release_s_ = 0.0, since_step_s_ = 0.0;
     bool released_ = false, down_ = false, clear_ = false;

@@ -164,8 +164,11 @@ void Vehicle::fire(flight::PyroId pyro, double now_s) {
         break;
     case PyroId::engine_valves: engines_.open_valves(now_s); break;
     case PyroId::backshell_separation:
-        let_go(separated_.backshell, stations.backshell_m, masses.backshell_and_parachute_kg,
-               parachute_open(now_s) ? parachute_area_m2_ : aeroshell_area_m2);
+        if (parachute_open(now_s))
+            let_go(separated_.backshell, stations.backshell_m, masses.backshell_and_parachute_kg, parachute_area_m2_,
+                   ParachuteLift{right_at_mortar_M_, now_s - *mortar_s_, parachute_plane_rad_});
+        else
+            let_go(separated_.backshell, stations.backshell_m, masses.backshell_and_parachute_kg, aeroshell_area_m2);
         configuration_.backshell = false;
         break;
     case PyroId::rover_separation:
@@ -192,8 +195,9 @@ void Vehicle::command(const flight::ThrusterCommand& thrusters, bool thrusters_e
     if (pay_out_bridle && !configuration_.rover_on_stage) bridle_.start(now_s);
 }
 
-void Vehicle::let_go(SeparatedBody& body, double station_m, double mass_kg, double drag_area_m2) const {
-    body.release(point_at(body_, Vector3{0.0, 0.0, station_m} - centre_B_m_), mass_kg, drag_area_m2);
+void Vehicle::let_go(SeparatedBody& body, double station_m, double mass_kg, double drag_area_m2,
+                     const std::optional<ParachuteLift>& lift) const {
+    body.release(point_at(body_, Vector3{0.0, 0.0, station_m} - centre_B_m_), mass_kg, drag_area_m2, lift);
 }
 
 PointMass Vehicle::point_at(const RigidBody& body, const Vector3& from_centre_B) const {

@@ -107,7 +107,8 @@ class Vehicle {
         std::optional<Trim> trim;  ///< by the Mach number at the step's start, since it changes slowly
     };
     /// Releases a jettisoned body from its station.
-    void let_go(SeparatedBody& body, double station_m, double mass_kg, double drag_area_m2) const;
+    void let_go(SeparatedBody& body, double station_m, double mass_kg, double drag_area_m2,
+                const std::optional<ParachuteLift>& lift = {}) const;
     /// State of a point of the body at `from_centre_B` from its centre of mass.
     PointMass point_at(const RigidBody& body, const Vector3& from_centre_B) const;
     /// Moves the state to the new centre of mass after the attached parts have changed.
