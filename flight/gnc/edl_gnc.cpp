@@ -194,6 +194,13 @@ void EdlGnc::measure(Sclk now) {
     m.target = target_geometry(state.p_MoB_M, state.v_MB_M, target_M_, solution_.target_radius_m);
 }
 
+// Under the parachute, while navigation is by IMU and radar.
+void EdlGnc::feel_wind() {
+    if (mode() != Mode::parachute_descent || !radar_filter_.locked() || reckoning_.silent_s() > 0.0) return;
+    const NavigatedState& state = strapdown_.state();
+    wind_.on(parameters(), measured_.up_M, state.v_MB_M, state.q_MB * strapdown_.specific_force_B_mps2());
+}
+
 // The only place where the mode changes, always by state_machines.csv.
 bool EdlGnc::take(GncModeEvent event, Sclk now, Output& out, const std::optional<Condition>& because) {
     const Mode from = mode();
@@ -240,6 +247,7 @@ void EdlGnc::cycle(const DeviceInputs& in, const Configuration& configuration, O
                 at_most(Quantity::radar_altitude_m, last_radar_altitude_m_, parameters().radar_altitude_max_m));
         fire(Trigger::radar_lock, first, out);
     }
+    feel_wind();
     follow_configuration(configuration, in.now, out);
     decide_in_air(configuration, in.now, out);
     decide_on_engines(configuration, in.now, out);
@@ -330,7 +338,8 @@ void EdlGnc::decide_on_engines(const Configuration& configuration, Sclk now, Out
             (m.descent_rate_mps - parameters().constant_velocity_mps) / approach_.deceleration_mps2();
         const Vector3& p_MoB_M = strapdown_.state().p_MoB_M;
         const Vector3 divert_M = load_.divert_m * azimuth_direction(p_MoB_M, load_.divert_azimuth_deg * degree);
-        const auto sidestep = choose_sidestep(parameters(), divert_M, m.level_velocity_M, duration_s);
+        const auto sidestep =
+            choose_sidestep(parameters(), divert_M, m.level_velocity_M, wind_.wind_M(parameters(), m.up_M), duration_s);
         out.sidestep = sidestep.conditions;
         divert_.start(sidestep.displacement_M, m.level_velocity_M, duration_s);
         divert_from_M_ = p_MoB_M;

@@ -13,6 +13,7 @@
 #include "flight/gnc/navigation/radar_batch.hpp"
 #include "flight/gnc/navigation/radar_filter.hpp"
 #include "flight/gnc/navigation/strapdown.hpp"
+#include "flight/gnc/navigation/wind_estimate.hpp"
 #include "flight/gnc/powered_descent/divert.hpp"
 #include "flight/gnc/powered_descent/vertical_profile.hpp"
 #include "flight/gnc/quantities.hpp"
@@ -250,8 +251,8 @@ class EdlGnc {
     template <typename Exchange>
     void carry(Exchange& exchange) {
         exchange(solution_, target_M_, navigating_, navigated_to_, pulses_felt_until_, strapdown_, reckoning_, belief_,
-                 smooth_force_B_mps2_, force_filter_, radar_filter_, measured_.altitude_m, mode_machine_, mode_since_,
-                 fired_, due_for_parachute_, low_for_backshell_, radar_first_, lateral_, bank_command_rad_,
+                 smooth_force_B_mps2_, force_filter_, radar_filter_, wind_, measured_.altitude_m, mode_machine_,
+                 mode_since_, fired_, due_for_parachute_, low_for_backshell_, radar_first_, lateral_, bank_command_rad_,
                  bank_at_sufr_rad_, bank_allowed_rad_, predicted_range_m_, lift_to_drag_command_, mass_kg_,
                  thrust_command_N_, approach_, divert_, divert_from_M_, deceleration_, rate_control_, touchdown_logic_,
                  last_radar_beams_, last_radar_altitude_m_, engines_silent_s_);
@@ -280,6 +281,7 @@ class EdlGnc {
     void take_cruise_attitude();
     void level_by(const RadarCorrection& correction);
     void measure(Sclk now);
+    void feel_wind();
     bool take(GncModeEvent event, Sclk now, Output& out, const std::optional<Condition>& because = {});
     bool fire(Trigger trigger, const Conditions& conditions, Output& out);
     void hold(Trigger trigger, const Conditions& conditions, Output& out) const;
@@ -312,6 +314,7 @@ class EdlGnc {
     Vector3 smooth_force_B_mps2_ = Vector3::Zero();
     ForceFilter force_filter_;
     RadarFilter radar_filter_;
+    WindEstimate wind_;
     Measured measured_;
     Sclk measured_at_;
 

@@ -55,17 +55,44 @@ TEST_CASE("a sidestep over whose end the backshell will drift, then or later, go
     // With 0.4 m/s the backshell is 284 m away after 40 s more, with 0.6 m/s 275 m; with 70 m/s it has passed before.
     for (const Vector3& elsewhere : {Vector3{-30.0, 0.0, 0.0}, Vector3{0.0, 30.0, 0.0}, Vector3{0.4, 0.0, 0.0},
                                      Vector3{70.0, 0.0, 0.0}, Vector3{-8.0, 8.0, 0.0}, Vector3{0.0, 0.0, 0.0}}) {
-        const auto chosen = choose_sidestep(parameters, divert, elsewhere, 18.0);
+        const auto chosen = choose_sidestep(parameters, divert, elsewhere, std::nullopt, 18.0);
         CHECK(chosen.displacement_M == divert);
-        CHECK(chosen.conditions.size() == 2);
-        CHECK(all_hold(chosen.conditions));
-    }
-    for (const Vector3& over_it : {Vector3{30.0, 0.0, 0.0}, Vector3{8.0, 8.0, 0.0}, Vector3{0.6, 0.0, 0.0}}) {
-        const auto chosen = choose_sidestep(parameters, divert, over_it, 18.0);
-        CHECK(chosen.displacement_M == -divert);
         CHECK(chosen.conditions.size() == 3);
         CHECK(all_hold(chosen.conditions));
     }
+    for (const Vector3& over_it : {Vector3{30.0, 0.0, 0.0}, Vector3{8.0, 8.0, 0.0}, Vector3{0.6, 0.0, 0.0}}) {
+        const auto chosen = choose_sidestep(parameters, divert, over_it, std::nullopt, 18.0);
+        CHECK(chosen.displacement_M == -divert);
+        CHECK(chosen.conditions.size() == 4);
+        CHECK(all_hold(chosen.conditions));
+    }
+}
+
+TEST_CASE("where the wind is known, the backshell drifts with it and not with the stage's velocity",
+          "[gnc][R27][R38]") {
+    constexpr aeolis::flight::Parameters parameters;
+    const Vector3 divert(304.0, 0.0, 0.0), still = Vector3::Zero(), wind(6.0, 0.0, 0.0);
+    CHECK(choose_sidestep(parameters, divert, still, std::nullopt, 18.0).displacement_M == divert);
+    const auto chosen = choose_sidestep(parameters, divert, still, wind, 18.0);
+    CHECK(chosen.displacement_M == -divert);
+    CHECK(all_hold(chosen.conditions));
+    // 30 m/s of glide bring the stage 270 m on: there the wind, which is across, does not bring the backshell.
+    const Vector3 glide(30.0, 0.0, 0.0), across(0.0, 6.0, 0.0);
+    CHECK(choose_sidestep(parameters, divert, glide, std::nullopt, 18.0).displacement_M == -divert);
+    CHECK(choose_sidestep(parameters, divert, glide, across, 18.0).displacement_M == divert);
+}
+
+TEST_CASE("a sidestep whose opposite would end still nearer to the backshell goes where it was planned",
+          "[gnc][R27][R38]") {
+    constexpr aeolis::flight::Parameters parameters;
+    const Vector3 divert(304.0, 0.0, 0.0), v0(30.0, 0.0, 0.0), wind(6.2, 0.0, 0.0);
+    // The backshell is 158 m behind the end of the stage's drift when the sidestep ends, and 90 m ahead of it 40 s on.
+    const auto chosen = choose_sidestep(parameters, divert, v0, wind, 18.0);
+    CHECK(chosen.displacement_M == divert);
+    REQUIRE(chosen.conditions.size() == 4);
+    CHECK(all_hold(chosen.conditions));
+    CHECK(chosen.conditions[1].value == Approx(214.4).margin(0.1));
+    CHECK(chosen.conditions[2].value == Approx(145.6).margin(0.1));
 }
 
 TEST_CASE("azimuth goes from north to east", "[gnc][R27]") {

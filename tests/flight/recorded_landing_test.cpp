@@ -4,6 +4,7 @@
 #include "flight/computer.hpp"
 #include "flight/gnc/entry/lateral_logic.hpp"
 #include "flight/gnc/mars.hpp"
+#include "flight/gnc/navigation/wind_estimate.hpp"
 #include "flight/gnc/powered_descent/divert.hpp"
 #include "flight/gnc/powered_descent/vertical_profile.hpp"
 #include "flight/gnc/triggers/triggers.hpp"
@@ -538,8 +539,9 @@ class Recorded {
         // Touchdown is judged before this cycle's thrust is commanded: by that of the one before.
         if (quantity == "thrust_N") return near("thrust_command_N", at - seconds_per_tick);
         if (quantity == "sidestep_as_planned") return of_sidestep(Quantity::sidestep_as_planned, at);
-        if (quantity == "drift_along_sidestep_mps") return of_sidestep(Quantity::drift_along_sidestep_mps, at);
+        if (quantity == "wind_known") return of_sidestep(Quantity::wind_known, at);
         if (quantity == "backshell_nearest_m") return of_sidestep(Quantity::backshell_nearest_m, at);
+        if (quantity == "backshell_nearest_opposite_m") return of_sidestep(Quantity::backshell_nearest_opposite_m, at);
         if (facts.contains(quantity)) return exactly(fact_before(quantity, at));
         if (values_.contains(quantity)) return near(quantity, at);
         return std::nullopt;
@@ -561,9 +563,11 @@ class Recorded {
         if (quantity == "dynamic_pressure_Pa") return any({p.parachute_pressure_max_Pa});
         if (quantity == "mach") return any({p.parachute_mach_max});
         if (quantity == "time_to_parachute_s") return any({p.sufr_lead_s});
-        if (quantity == "sidestep_as_planned") return any({0.0, 1.0});
+        if (quantity == "sidestep_as_planned" || quantity == "wind_known") return any({0.0, 1.0});
         if (quantity == "backshell_nearest_m") return any({p.divert_clearance_min_m});
-        if (quantity == "drift_along_sidestep_mps") return any({0.0});
+        if (quantity == "backshell_nearest_opposite_m")  // the one is compared with the other
+            for (const telemetry::Condition& condition : told.explanation.conditions)
+                if (condition.quantity == "backshell_nearest_m") return any({condition.value});
         if (quantity == "time_to_backshell_s") return any({p.priming_lead_s});
         if (quantity == "time_since_backshell_s") return any({p.powered_approach_delay_s});
         if (quantity == "time_since_parachute_s") return any({p.heatshield_delay_min_s, p.heatshield_patience_s});
@@ -676,7 +680,7 @@ class Recorded {
             const std::optional<double> value = ground_.decoded.value[i];
             if (!value) continue;
             if (name == "GncNavigation" || name == "GncEntry" || name == "GncDescent" || name == "GncRadar" ||
-                name == "EdlStatus" || name == "GncConfiguration")
+                name == "GncImu" || name == "EdlStatus" || name == "GncConfiguration")
                 values_[fields[i].name][sclk] = *value;
             if (name == "ParametersHeld") held_[fields[i].name] = *value;
             if (name == "GNC_MODE_CHANGED" && fields[i].name == "gnc_mode")
@@ -690,15 +694,37 @@ class Recorded {
         labels_[channel][sclk] = telemetry::number_text(type, value);
     }
 
-    /// What the choice of the sidestep's side compares, by the navigated state of that cycle.
+    gnc::Vector3 vector_at(const std::string& name, const char* unit, double at) const {
+        gnc::Vector3 v;
+        for (const int i : {0, 1, 2})
+            v[i] = std::prev(values_.at(name + "_" + "xyz"[i] + unit).upper_bound(at))->second;
+        return v;
+    }
+
+    /// The wind that the recording shows: of the pull of the parachute it holds every fourth cycle.
+    std::optional<gnc::Vector3> wind_M(double at) const {
+        gnc::WindEstimate wind;
+        const auto& locked = values_.at("radar_locked");
+        const auto first = std::ranges::find_if(locked, [](const auto& each) { return each.second == 1.0; });
+        REQUIRE(first != locked.end());
+        const auto& ticks = values_.at("nav_velocity_x_mps");
+        for (auto tick = ticks.lower_bound(first->first); tick->first < at; ++tick) {
+            const double sclk = tick->first;
+            if (label_before("gnc_mode", sclk) != "parachute_descent") continue;
+            const auto part = [&](const char* of) { return values_.at(std::string{"nav_attitude_"} + of).at(sclk); };
+            const gnc::Quaternion q_MB{part("w"), part("x"), part("y"), part("z")};
+            wind.on(Parameters{}, vector_at("nav_position", "_m", sclk).normalized(),
+                    vector_at("nav_velocity", "_mps", sclk), q_MB * vector_at("acceleration", "_mps2", sclk));
+        }
+        return wind.wind_M(Parameters{}, vector_at("nav_position", "_m", at).normalized());
+    }
+
+    static constexpr double wind_recorded_within = 4.0e-3;  ///< of the backshell's distance, by that wind
+
+    /// What the choice of the sidestep's side compares, by the navigated state of that cycle and the wind.
     std::optional<Range> of_sidestep(Quantity quantity, double at) const {
         namespace powered_descent = gnc::powered_descent;
-        const auto vector = [&](const std::string& name, const char* unit) {
-            gnc::Vector3 v;
-            for (const int i : {0, 1, 2}) v[i] = values_.at(name + "_" + "xyz"[i] + unit).at(at);
-            return v;
-        };
-        const gnc::Vector3 p_M = vector("nav_position", "_m"), v_M = vector("nav_velocity", "_mps");
+        const gnc::Vector3 p_M = vector_at("nav_position", "_m", at), v_M = vector_at("nav_velocity", "_mps", at);
         const gnc::Vector3 up = p_M.normalized();
         const double sinking_mps = near("descent_rate_mps", at).low;
         const Parameters p;
@@ -707,9 +733,9 @@ class Recorded {
         approach.start(p, near("altitude_m", at).low, sinking_mps);
         const auto chosen = powered_descent::choose_sidestep(
             p, load.divert_m * powered_descent::azimuth_direction(p_M, load.divert_azimuth_deg * gnc::degree),
-            v_M - v_M.dot(up) * up, (sinking_mps - p.constant_velocity_mps) / approach.deceleration_mps2());
+            v_M - v_M.dot(up) * up, wind_M(at), (sinking_mps - p.constant_velocity_mps) / approach.deceleration_mps2());
         for (const auto& condition : chosen.conditions)
-            if (condition.quantity == quantity) return within(condition.value, 1.0e-3);
+            if (condition.quantity == quantity) return within(condition.value, wind_recorded_within);
         return std::nullopt;
     }
 

@@ -8,7 +8,9 @@
 #include "tests/simulation/truth_pilot.hpp"
 #include "tests/support/catch.hpp"
 
+#include <array>
 #include <cmath>
+#include <optional>
 
 namespace simulation_separated_bodies_test {
 
@@ -49,6 +51,36 @@ TEST_CASE("a backshell under its parachute comes down at the terminal speed of i
     fly(60.0);
     CHECK(backshell.at().p_MoB_M.norm() == Approx(ground_m));
     CHECK(backshell.at().v_MB_M.isZero());
+}
+
+TEST_CASE("a backshell under its parachute glides on as the parachute lifts, in a circle as its plane of lift turns",
+          "[simulation][separated]") {
+    const Still air;
+    // The plane of lift turns by 4.5 deg/s. At V the air turns the velocity to where it pulls within V/g, so that the
+    // glide is that much slower than lift over drag.
+    constexpr double turns_rps = 4.5 * 3.14159265358979 / 180.0, turn_s = 80.0;
+    const auto glides = [&](const std::optional<ParachuteLift>& lift) {
+        SeparatedBody backshell{10.0, 40.0};
+        backshell.release(at_height(7000.0, 79.0), 349.0, 205.0, lift);
+        const auto fly = [&](double for_s) {
+            for (double t = 0.0; t < for_s; t += seconds_per_tick) air.tick(backshell, ground_m * up);
+        };
+        const auto level_of = [](const Vector3& v) { return Vector3{v - v.x() * up}; };
+        fly(40.0);
+        const Vector3 from = level_of(backshell.at().p_MoB_M);
+        const double sinks_mps = -backshell.at().v_MB_M.x();
+        const double level_mps = level_of(backshell.at().v_MB_M).norm();
+        fly(0.5 * turn_s);
+        const double across_m = (level_of(backshell.at().p_MoB_M) - from).norm();
+        fly(0.5 * turn_s);
+        return std::array{level_mps / sinks_mps, across_m, (level_of(backshell.at().p_MoB_M) - from).norm(), sinks_mps};
+    };
+    const auto [slope, across_m, returned_m, sinks_mps] = glides(ParachuteLift{Vector3::UnitY(), 100.0, 0.0});
+    const double slope_expected = 0.17 / std::hypot(1.0, turns_rps * sinks_mps / 3.71);
+    CHECK(slope == Approx(slope_expected).epsilon(0.05));
+    CHECK(across_m == Approx(2.0 * slope_expected * sinks_mps / turns_rps).epsilon(0.15));
+    CHECK(returned_m < 0.2 * across_m);
+    CHECK(glides({})[1] < 5.0);  // Mars turns below it
 }
 
 TEST_CASE("a body that does not get clear in time has struck the vehicle", "[simulation][separated]") {
@@ -116,6 +148,27 @@ TEST_CASE("in a landing nothing that was let go is met again", "[simulation][sep
     CHECK(separation.struck == nullptr);
     REQUIRE(separation.backshell_least_m);
     CHECK(*separation.backshell_least_m > 50.0);
+}
+
+TEST_CASE("where the stage glides otherwise than the wind blows, it keeps away from its backshell nonetheless",
+          "[simulation][separated][gnc][R27]") {
+    // Case 490 of the campaign with seed 1: its stage moved west by the glide, and the wind blew east.
+    Scenario scenario = tests::gale_scenario();
+    scenario.disperse_before_entry_s = 10.0;
+    World world{scenario, 1};
+    GncAlone gnc{load_for(scenario), world.solution(), world.sclk()};
+    while (world.sclk() < scenario.entry_sclk - 10.0) world.advance(gnc.cycle(world.sense()));
+    gnc.shift_navigation(world.disperse(1, 490));
+    std::optional<bool> wind_known;
+    while (world.outcome() == Outcome::running) {
+        world.advance(gnc.cycle(world.sense()));
+        for (const auto& condition : gnc.told().sidestep)
+            if (condition.quantity == flight::Quantity::wind_known) wind_known = condition.value == 1.0;
+    }
+    CHECK(world.outcome() == Outcome::touchdown);
+    CHECK(wind_known == true);
+    REQUIRE(world.separation().backshell_least_m);
+    CHECK(*world.separation().backshell_least_m > 280.0);
 }
 
 TEST_CASE("it is the sidestep that keeps the stage from its backshell", "[simulation][separated][gnc]") {

@@ -42,26 +42,29 @@ Vector3 Divert::command_M(const Parameters& parameters, double t_s, const Vector
 }
 
 Sidestep choose_sidestep(const Parameters& parameters, const Vector3& divert_M, const Vector3& v0_M,
-                         double duration_s) {
-    const Condition goes_with = above(Quantity::drift_along_sidestep_mps, v0_M.dot(divert_M.normalized()), 0.0);
-    const Vector3 from_backshell_M = divert_M - 0.5 * v0_M * duration_s;  // at the end of the sidestep
-    const double drift2 = v0_M.squaredNorm();
-    const double nearest_s =
-        drift2 > 0.0 ? std::clamp(from_backshell_M.dot(v0_M) / drift2, 0.0, parameters.divert_clearance_for_s) : 0.0;
-    const double nearest_m = (from_backshell_M - nearest_s * v0_M).norm();
-    const Condition close = below(Quantity::backshell_nearest_m, nearest_m, parameters.divert_clearance_min_m);
-    const bool planned = !goes_with.holds || !close.holds;
+                         const std::optional<Vector3>& wind_M, double duration_s) {
+    const Vector3 drift_M = wind_M.value_or(v0_M);
+    const Vector3 backshell_M = (drift_M - 0.5 * v0_M) * duration_s;  // from where the stage's drift ends, at the end
+    const double drift2 = drift_M.squaredNorm();
+    const auto nearest_m = [&](const Vector3& end_M) {
+        const Vector3 apart_M = end_M - backshell_M;
+        const double nearest_s =
+            drift2 > 0.0 ? std::clamp(apart_M.dot(drift_M) / drift2, 0.0, parameters.divert_clearance_for_s) : 0.0;
+        return (apart_M - nearest_s * drift_M).norm();
+    };
+    const double planned_m = nearest_m(divert_M);
+    const double opposite_m = nearest_m(-divert_M);
+    const bool clear = planned_m >= parameters.divert_clearance_min_m;
+    const bool planned = clear || planned_m >= opposite_m;
     Sidestep chosen{planned ? divert_M : Vector3{-divert_M}, {}};
     chosen.conditions.push_back(is(Quantity::sidestep_as_planned, planned, planned));
-    if (!goes_with.holds) {
-        chosen.conditions.push_back(at_most(Quantity::drift_along_sidestep_mps, goes_with.value, 0.0));
-    } else if (!close.holds) {
-        chosen.conditions.push_back(
-            at_least(Quantity::backshell_nearest_m, nearest_m, parameters.divert_clearance_min_m));
-    } else {
-        chosen.conditions.push_back(close);
-        chosen.conditions.push_back(goes_with);
-    }
+    chosen.conditions.push_back(
+        clear ? at_least(Quantity::backshell_nearest_m, planned_m, parameters.divert_clearance_min_m)
+              : below(Quantity::backshell_nearest_m, planned_m, parameters.divert_clearance_min_m));
+    if (!clear)
+        chosen.conditions.push_back(planned ? at_most(Quantity::backshell_nearest_opposite_m, opposite_m, planned_m)
+                                            : above(Quantity::backshell_nearest_opposite_m, opposite_m, planned_m));
+    chosen.conditions.push_back(is(Quantity::wind_known, wind_M.has_value(), wind_M.has_value()));
     return chosen;
 }
 

@@ -5,6 +5,8 @@
 #include "flight/gnc/vector.hpp"
 #include "generated/parameters.hpp"
 
+#include <optional>
+
 // The divert of the powered approach, away from the backshell: a sidestep that ends at rest.
 //
 //   s(t) = v0 t + c3 t³ + c4 t⁴ + c5 t⁵,  with s(T) = Δ, ṡ(T) = 0, s̈(0) = s̈(T) = 0
@@ -48,10 +50,13 @@ struct Sidestep {
     Conditions conditions;  ///< by which the side was chosen. R38
 };
 
-/// The sidestep to fly: `divert_M`, or its opposite where the backshell, which drifts on at v0_M, would come to within
-/// divert_clearance_min_m of the end of the sidestep, then or in divert_clearance_for_s after it: over that place the
-/// stage sinks until the rover stands.
-Sidestep choose_sidestep(const Parameters& parameters, const Vector3& divert_M, const Vector3& v0_M, double duration_s);
+/// The sidestep to fly: `divert_M`, or its opposite where the drifting backshell would come to within
+/// divert_clearance_min_m of the end of the sidestep, then or in divert_clearance_for_s after it, and would stay farther
+/// from the opposite end: over that place the stage sinks until the rover stands.
+/// @param v0_M    [m/s] horizontal velocity at the start
+/// @param wind_M  [m/s] with which the backshell drifts; v0_M is taken for it where it is not known
+Sidestep choose_sidestep(const Parameters& parameters, const Vector3& divert_M, const Vector3& v0_M,
+                         const std::optional<Vector3>& wind_M, double duration_s);
 
 /// Horizontal unit vector of an azimuth (from north to east) at p, in M.
 Vector3 azimuth_direction(const Vector3& p_MoB_M, double azimuth_rad);
