@@ -122,7 +122,7 @@ std::ostream& operator<<(std::ostream& stream, const Count& count) {
 }  // namespace
 
 TEST_CASE("no kind of spoiled samples gives a wrong tone or one that was not sent, and tones are heard on",
-          "[tones][R56]") {
+          "[release][tones][R56]") {
     for (const Case& one : cases()) {
         if (!one.is_short) continue;
         const Count count = run(one, 40.0, 11);
@@ -249,7 +249,7 @@ Count check_swings(std::uint64_t runs) {
 
 TEST_CASE("a carrier that steps and swings as under a parachute leaves no tone wrong and the receiver never blind for "
           "ten seconds",
-          "[tones][R56]") {
+          "[release][tones][R56]") {
     const Count all = check_swings(6);
     INFO(all);
     CHECK(all.right >= 0.9 * all.sent);
