@@ -121,7 +121,7 @@ CREATE VIEW packet_log AS
     JOIN words s ON s.kind = 'source' AND s.number = u.source
     JOIN words d ON d.kind = 'standing' AND d.number = u.standing;
 CREATE VIEW event_log AS
-    SELECT e.key >> 40 AS run, e.key & 0xFFFFFFFFFF AS seq, e.sclk, e.sclk - r.entry_sclk AS e_s,
+    SELECT e.key >> 40 AS run, e.key & 0xFFFFFFFFFF AS seq, e.sclk, e.sclk - nullif(r.entry_sclk, 0) AS e_s,
            strftime('%Y-%jT%H:%M:%f', e.ert_us / 1e6 + 946728000, 'unixepoch') AS ert, e.level, e.name, e.text,
            s.word AS source, e.duplicate
     FROM events e JOIN runs r ON r.run = e.key >> 40 JOIN words s ON s.kind = 'source' AND s.number = e.source;
@@ -136,11 +136,11 @@ CREATE VIEW command_log AS
     FROM command_stages c;
 CREATE VIEW timeline_log AS
     SELECT f.key >> 40 AS run, f.key & 0xFFFFFFFFFF AS seq, f.timepoint, f.name, f.fired_sclk,
-           f.fired_sclk - r.entry_sclk AS e_s, f.triggered_sclk, f.verdict, s.word AS source, f.duplicate
+           f.fired_sclk - nullif(r.entry_sclk, 0) AS e_s, f.triggered_sclk, f.verdict, s.word AS source, f.duplicate
     FROM timepoint_firings f JOIN runs r ON r.run = f.key >> 40
     JOIN words s ON s.kind = 'source' AND s.number = f.source;
 CREATE VIEW explanation_log AS
-    SELECT x.key >> 40 AS run, x.key & 0xFFFFFFFFFF AS seq, x.sclk, x.sclk - r.entry_sclk AS e_s, x.decision,
+    SELECT x.key >> 40 AS run, x.key & 0xFFFFFFFFFF AS seq, x.sclk, x.sclk - nullif(r.entry_sclk, 0) AS e_s, x.decision,
            x.verdict, x.subject, x.text, x.duplicate
     FROM explanations x JOIN runs r ON r.run = x.key >> 40;
 CREATE VIEW alarm_log AS
@@ -184,7 +184,7 @@ CREATE VIEW alarm_action_log AS
 CREATE VIEW shift_log AS
     SELECT n.key >> 40 AS run, n.key & 0xFFFFFFFFFF AS seq,
            strftime('%Y-%jT%H:%M:%f', n.ert_us / 1e6 + 946728000, 'unixepoch') AS at, n.written, n.author, n.sclk,
-           n.sclk - r.entry_sclk AS e_s, n.text
+           n.sclk - nullif(r.entry_sclk, 0) AS e_s, n.text
     FROM notes n JOIN runs r ON r.run = n.key >> 40;
 CREATE VIEW procedure_log AS
     SELECT a.key >> 40 AS run, a.key & 0xFFFFFFFFFF AS seq,
@@ -194,9 +194,9 @@ CREATE VIEW procedure_log AS
 CREATE VIEW clock_log AS
     SELECT r.run, r.scenario, r.clock_version AS version, r.correlation_sclk AS sclk,
            strftime('%Y-%jT%H:%M:%f', r.correlation_scet_us / 1e6 + 946728000, 'unixepoch') AS scet,
-           r.clock_rate - 1.0 AS drift, r.leap_seconds, r.entry_sclk,
+           r.clock_rate - 1.0 AS drift, r.leap_seconds, nullif(r.entry_sclk, 0) AS entry_sclk,
            strftime('%Y-%jT%H:%M:%f', r.correlation_scet_us / 1e6
-               + (r.entry_sclk - r.correlation_sclk) * r.clock_rate + 946728000, 'unixepoch') AS entry_scet,
+               + (nullif(r.entry_sclk, 0) - r.correlation_sclk) * r.clock_rate + 946728000, 'unixepoch') AS entry_scet,
            r.light_time_s
     FROM runs r;
 CREATE VIEW command_wait_log AS

@@ -2,6 +2,7 @@
 // A run of our own mission that was recorded elsewhere: nobody said when entry was.
 #include "server/archive/reader.hpp"
 #include "server/archive/run_differences.hpp"
+#include "server/archive/sqlite.hpp"
 #include "server/pipeline/pipeline.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
@@ -47,6 +48,22 @@ TEST_CASE("where nobody knows when entry was, the as-flown report counts no time
         REQUIRE(report->events_size() == 1);
         CHECK(report->events(0).has_realtime_e_s() == is_known);
         for (const auto& row : report->timepoints()) CHECK((is_known || !row.has_predicted_e_s()));
+    }
+}
+
+TEST_CASE("where nobody knows when entry was, the SQL views have no seconds from it and no date of it",
+          "[archive][times]") {
+    const TwoRuns runs;
+    auto database = sqlite::Database::open((runs.folder / "a.db").string(), sqlite::Mode::read_only);
+    REQUIRE(database.ok());
+    for (const char* const view : {"event_log WHERE e_s IS NULL", "timeline_log WHERE e_s IS NULL",
+                                   "clock_log WHERE entry_sclk IS NULL AND entry_scet IS NULL"}) {
+        INFO(view);
+        const auto runs_of = [&](const char* what) {
+            return database->integer_of(("SELECT " + std::string{what} + "(run) FROM " + view).c_str()).value();
+        };
+        CHECK(runs_of("min") == 2);
+        CHECK(runs_of("max") == 2);
     }
 }
 
