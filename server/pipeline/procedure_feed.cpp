@@ -78,7 +78,10 @@ void ProcedureFeed::follow(const archive::Batch& batch, const std::vector<std::o
     });
     if (under_way_ > 0)
         each_new(batch.stages, followed_, [&](const archive::StageRecord& stage) {
-            board_.on(CommandFate{stage.command, stage.name, stage.stage, stage.status, stage.evidence, stage.ert});
+            CommandFate fate{stage.command, stage.name, stage.stage, stage.status, stage.evidence, stage.ert, {}};
+            if (const auto* command = stage.octets.empty() ? nullptr : dictionary_.command(stage.name))
+                if (auto arguments = commands::decode(*command, stage.octets)) fate.arguments = std::move(*arguments);
+            board_.on(fate);
         });
     followed_ = batch.last_seq;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/procedures/execution.hpp"
 
+#include "commands/encoder.hpp"
+
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -133,6 +135,22 @@ Result<void> Execution::skip(const Act& act) {
     return {};
 }
 
+namespace {
+
+/// "rate=0.2 where rate=0.1 is prepared": the first argument that was sent with another value than the step prepares.
+std::optional<std::string> other_arguments(const PreparedCommand& prepared,
+                                           const std::vector<commands::NamedValue>& sent) {
+    for (const commands::NamedValue& fixed : prepared.fixed) {
+        const auto found = std::ranges::find(sent, fixed.name, &commands::NamedValue::name);
+        if (found != sent.end() && found->value != fixed.value)
+            return fmt::format("{} where {} is prepared", commands::arguments_text(std::span{&*found, 1}),
+                               commands::arguments_text(std::span{&fixed, 1}));
+    }
+    return {};
+}
+
+}  // namespace
+
 Result<void> Execution::sent(const Act& act) {
     const auto index = open_step(act);
     if (!index) return index.error();
@@ -156,6 +174,9 @@ Result<void> Execution::sent(const Act& act) {
     if (fate->second.name != step.command->name)
         return Error{fmt::format("command {} is {}, and step {} has {}", act.command, fate->second.name, step.id,
                                  step.command->name)};
+    if (const auto other = other_arguments(*step.command, fate->second.arguments); other && act.reason.empty())
+        return Error{fmt::format("command {} has {}; to take it for that of step {} needs a reason", act.command,
+                                 *other, step.id)};
     status.command = act.command;
     status.command_evidence = fate->second.text;
     if (!act.reason.empty()) status.reason = act.reason;

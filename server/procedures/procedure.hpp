@@ -86,6 +86,7 @@ using Condition = std::variant<ChannelCondition, EventCondition, TimeCondition>;
 struct PreparedCommand {
     std::string name;
     std::vector<commands::NamedValue> arguments;
+    std::vector<commands::NamedValue> fixed;            ///< these and the defaults, as the vehicle gets them
     std::vector<std::string> to_fill;                   ///< arguments that whoever sends it gives
     bool from_solution = false;                         ///< arguments not given come from ground's navigation solution
     commands::Stage until = commands::Stage::executed;  ///< the stage at which the step is done

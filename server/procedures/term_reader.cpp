@@ -192,6 +192,27 @@ std::vector<Condition> TermReader::conditions(const YamlNode* node) {
     return all;
 }
 
+namespace {
+
+/// The value with which the argument is sent, as the vehicle gets it; none: whoever sends it gives it.
+std::optional<commands::NamedValue> as_encoded(const dictionary::Command& command, const dictionary::Argument& argument,
+                                               const PreparedCommand& prepared) {
+    const auto given = std::ranges::find(prepared.arguments, argument.name, &commands::NamedValue::name);
+    const bool is_given = given != prepared.arguments.end();
+    if (!is_given &&
+        (prepared.from_solution || std::ranges::find(prepared.to_fill, argument.name) != prepared.to_fill.end()))
+        return {};
+    dictionary::Command alone = command;
+    alone.arguments = {argument};
+    const auto packet =
+        commands::encode(alone, is_given ? std::span{&*given, 1} : std::span<const commands::NamedValue>{}, 0);
+    if (!packet) return {};  // told where it was given
+    const auto read = commands::decode(alone, *packet);
+    return read ? std::optional{read->front()} : std::nullopt;
+}
+
+}  // namespace
+
 void TermReader::arguments(const YamlNode& node, const YamlNode* given, const dictionary::Command& command,
                            PreparedCommand& prepared) {
     std::vector<std::string> named = prepared.to_fill;
@@ -218,6 +239,8 @@ void TermReader::arguments(const YamlNode& node, const YamlNode* given, const di
             prepared.arguments.push_back(filled);
         }
     }
+    for (const auto& argument : command.arguments)
+        if (const auto fixed = as_encoded(command, argument, prepared)) prepared.fixed.push_back(*fixed);
     if (prepared.from_solution) return;
     for (const auto& argument : command.arguments)
         if (!argument.default_value && std::ranges::find(named, argument.name) == named.end())

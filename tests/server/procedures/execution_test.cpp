@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/procedures/execution.hpp"
+
+#include "commands/encoder.hpp"
 #include "tests/server/procedures/written_procedure.hpp"
 #include "tests/support/catch.hpp"
 
@@ -35,8 +37,9 @@ class UnderWay {
         execution.on(EventReceived{tests::shipped_dictionary().event(event)->id, at(now_s)});
     }
     void pass(double seconds) { execution.pass(at(now_s += seconds)); }
-    void fate(std::uint64_t command, Stage stage, Status status, const char* name = "NO_OP") {
-        execution.on(CommandFate{command, name, stage, status, "evidence", at(now_s)});
+    void fate(std::uint64_t command, Stage stage, Status status, const char* name = "NO_OP",
+              std::vector<commands::NamedValue> arguments = {}) {
+        execution.on(CommandFate{command, name, stage, status, "evidence", at(now_s), std::move(arguments)});
     }
     /// Why the act was refused; empty: it was not.
     std::string act(Act::Kind kind, const std::string& step, Position position = Position::gnc,
@@ -157,6 +160,38 @@ TEST_CASE("a command's step is done by the stage of the command that was sent, n
     run.fate(9, Stage::executed, Status::ok);
     CHECK(run.state("a") == StepState::checked);
     CHECK(run.status("a").command == 9);
+}
+
+TEST_CASE("a command with other arguments than the step's is not taken for it without a reason", "[procedures]") {
+    UnderWay run{with_body("  - {step: a, who: command, do: A, command: {name: SECOND_CHANCE_ENABLE, "
+                           "arguments: {enabled: \"yes\"}}}\n"
+                           "  - {step: b, who: command, do: B, command: {name: EDL_SET_TIMEPOINT_OFFSET, "
+                           "arguments: {desired_offset_s: 0.25}, to_fill: [timepoint]}}\n")};
+    const auto send = [&](const char* step, std::uint64_t number, const std::string& reason = "") {
+        return run.act(Act::Kind::sent, step, Position::command, reason, 0, number);
+    };
+    run.fate(1, Stage::queued, Status::ok, "SECOND_CHANCE_ENABLE", {{"enabled", 0.0}});
+    run.fate(1, Stage::executed, Status::ok, "SECOND_CHANCE_ENABLE");
+    CHECK(send("a", 1) == "command 1 has enabled=0 where enabled=1 is prepared; to take it for that of step a needs a "
+                          "reason");
+    run.fate(2, Stage::queued, Status::ok, "SECOND_CHANCE_ENABLE", {{"enabled", 1.0}});
+    CHECK(send("a", 2).empty());
+    run.fate(2, Stage::executed, Status::ok, "SECOND_CHANCE_ENABLE");
+    REQUIRE(run.state("a") == StepState::checked);
+
+    // What is to be filled may be anything; what is neither given nor filled has its default.
+    const auto& command = *tests::shipped_dictionary().command("EDL_SET_TIMEPOINT_OFFSET");
+    const auto sent = [&](std::uint64_t number, std::vector<commands::NamedValue> given) {
+        const auto packet = commands::encode(command, given, 0);
+        REQUIRE(packet.ok());
+        run.fate(number, Stage::queued, Status::ok, "EDL_SET_TIMEPOINT_OFFSET",
+                 commands::decode(command, *packet).value());
+    };
+    sent(3, {{"timepoint", 3.0}, {"desired_offset_s", 0.5}, {"minimum_offset_s", 0.0}});
+    CHECK_THAT(send("b", 3), Catch::StartsWith("command 3 has desired_offset_s=0.5 where desired_offset_s=0.25 is"));
+    sent(4, {{"timepoint", 4.0}, {"desired_offset_s", 0.25}, {"minimum_offset_s", 0.0}});
+    CHECK(send("b", 4).empty());
+    CHECK(run.status("b").command == 4);
 }
 
 TEST_CASE("somebody chooses a branch, which leads on by its way alone", "[procedures]") {
