@@ -7,7 +7,7 @@ import { request } from 'node:http';
 import path from 'node:path';
 import { test } from 'node:test';
 import { serve as serveOpenMct } from '../../../web/openmct/serve.mjs';
-import { browser, open, root, serve, temporaryFolder, waitFor } from '../support.mjs';
+import { browser, open, root, serve, temporaryFolder, untilRun, waitFor } from '../support.mjs';
 
 const installed = existsSync(path.join(root, 'web/openmct/node_modules/openmct/dist/openmct.js'));
 
@@ -52,10 +52,7 @@ test('Open MCT shows runs and channels of a server, with history and live values
       });
       return taken.map(({ e, value }) => ({ e, value }));
     });
-    await waitFor(
-      async () => (await server.get('/runs')).runs[0].state,
-      (state) => state === 'finished',
-    );
+    await untilRun(server, ({ state }) => state === 'finished');
 
     const history = await page.evaluate(async () => {
       const altitude = await openmct.objects.get({ namespace: 'aeolis', key: '1~altitude_m' });
@@ -123,10 +120,7 @@ test('what serves Open MCT answers its own page alone, gives no socket for comma
   const pages = await serveOpenMct(server.address);
   const { port } = pages.address();
   try {
-    await waitFor(
-      async () => (await server.get('/runs')).runs[0]?.state,
-      (state) => state === 'finished',
-    );
+    await untilRun(server, ({ state }) => state === 'finished');
     const own = { origin: `http://127.0.0.1:${port}` };
     const live = '/live?run=1&after=0&channels=1,2';
     for (const address of ['/', '/plugin.js', '/api/v1/runs']) {
