@@ -25,7 +25,9 @@ SituationMonitor::Origin origin_of(const archive::ItemRecord& record,
 }  // namespace
 
 SituationFeed::SituationFeed(const dictionary::Dictionary& dictionary, const archive::RunStart& start)
-    : monitor_(dictionary, clocks_of(start)), expects_(dictionary.packet("ShadowExpects")) {
+    : monitor_(dictionary, clocks_of(start)),
+      // another mission's dictionary has no model, though its packet may have this name
+      expects_(dictionary.model ? dictionary.packet("ShadowExpects") : nullptr) {
     if (expects_ != nullptr) decommutator_.emplace(dictionary);
     const archive::PacketColumns columns{dictionary};
     for (std::size_t packet = 0; packet < columns.packets(); ++packet) {
