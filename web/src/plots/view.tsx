@@ -95,6 +95,7 @@ const isAhead = () => isPredicted() && !difference.value;
 
 /** Draws what lies under grid and samples. */
 function underlay(plot: uPlot, channel: DictionaryChannel, per: number): void {
+  silenceWords.delete(plot);
   shadeSilence(plot);
   limitNames.delete(plot);
   if (!lineOf(channel, per) || !showsDifference(channel)) alarmBands(plot, channel, per);
@@ -103,8 +104,9 @@ function underlay(plot: uPlot, channel: DictionaryChannel, per: number): void {
 function drawPredicted(plot: uPlot, channel: DictionaryChannel, per: number): void {
   const line = lineOf(channel, per);
   const names = limitNames.get(plot) ?? [];
-  if (isAhead()) drawing?.drawAhead(plot, nowOf(), names);
-  if (line) drawing?.drawPredictedLine(plot, line, showsDifference(channel), names);
+  const taken = [...names, ...(silenceWords.get(plot) ?? [])];
+  if (isAhead()) drawing?.drawAhead(plot, nowOf(), taken);
+  if (line) drawing?.drawPredictedLine(plot, line, showsDifference(channel), taken);
   if (!showsDifference(channel)) drawing?.drawOther(plot, channel, per);
   const { ctx } = plot;
   const ratio = window.devicePixelRatio || 1;
@@ -181,12 +183,17 @@ function options(
   };
 }
 
+/** The words of silences in a plot: the place of each, as drawn last. */
+const silenceWords = new WeakMap<uPlot, { from: number; to: number; y: number }[]>();
+
 /** Shades the times without live telemetry, instead of drawing a line that was never measured. */
 function shadeSilence(plot: uPlot): void {
   const run = shownRun();
   if (!run) return;
   const { left, top, width, height } = plot.bbox;
   const now = Math.min(run.seenSclk, cutoff.value) - run.entrySclk;
+  const places: { from: number; to: number; y: number }[] = [];
+  silenceWords.set(plot, places);
   plot.ctx.save();
   for (const outage of liveOutages(run, now, cutoff.value)) {
     const from = Math.max(left, plot.valToPos(outage.from, 'x', true));
@@ -198,7 +205,9 @@ function shadeSilence(plot: uPlot): void {
     plot.ctx.fillRect(from, top, to - from, height);
     const words = `${shape} ${shortReason(outage.words)}`;
     plot.ctx.font = `${TYPE.mark * (window.devicePixelRatio || 1)}px ${palette().sans}`;
-    if (plot.ctx.measureText(words).width + 8 > to - from) continue;
+    const wide = plot.ctx.measureText(words).width;
+    if (wide + 8 > to - from) continue;
+    places.push({ from: (from + to - wide) / 2, to: (from + to + wide) / 2, y: top + height - 4 });
     plot.ctx.globalAlpha = 1;
     plot.ctx.textAlign = 'center';
     plot.ctx.textBaseline = 'bottom';
