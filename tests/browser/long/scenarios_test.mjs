@@ -26,6 +26,8 @@ for (const scenario of SCENARIOS)
     const flown = spawnSync(program, ['rehearse', '--scenario', scenario, '--archive', archive], { encoding: 'utf8' });
     assert.ok([0, 1].includes(flown.status) && existsSync(archive), flown.stderr); // 1: it did not land
     const server = await serve(t, 'flown', [], { archive });
+    // the first pictures were without what is predicted, the later ones with it
+    await waitFor(async () => (await server.get('/runs/1/prediction')).state, /^(?!flying)./);
     const { page, problems, shows } = await open(
       `${server.address}/?run=1&past=-60,${UNTIL_E_S}`,
       { width: 1440, height: 790 },
