@@ -196,7 +196,10 @@ export async function measuredTabs(workplace, t, sizes) {
   for (const tab of tabs) {
     await page.setViewportSize({ width: 1440, height: 790 });
     await page.getByTestId(tab).click();
-    await page.waitForTimeout(1000); // for what it asks the server
+    await waitFor(
+      () => page.locator('body').innerText(),
+      (all) => !/asking…|has not answered|Loading …/.test(all),
+    );
     found.push(...(await measuredAt(page, tab, sizes)));
   }
   await page.close();

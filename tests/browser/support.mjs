@@ -18,6 +18,7 @@ export const program =
   process.env.AEOLIS_PROGRAM ?? process.env.AEOLIS_BINARY ?? path.join(root, 'build/release/aeolis');
 // chosen: limit of every wait. Only a failure waits this long, and a busy machine fails nothing
 const DEADLINE_MS = 120_000;
+const TICKS_HZ = 100; // of /proc, on every Linux
 
 export async function temporaryFolder() {
   const folder = await mkdtemp(path.join(tmpdir(), 'aeolis-browser-'));
@@ -70,6 +71,14 @@ export async function serve({ archive, port = 0, planFlights = 0, more = [], web
     address,
     port: Number(new URL(address).port),
     said: () => said,
+    /** Processor time that it has used, in seconds. */
+    processor_s: () => {
+      const [utime, stime] = readFileSync(`/proc/${child.pid}/stat`, 'utf8')
+        .replace(/.*\) /, '')
+        .split(' ')
+        .slice(11, 13);
+      return (Number(utime) + Number(stime)) / TICKS_HZ;
+    },
     kill: () => end('SIGKILL'),
     stop: async () => {
       const late = setTimeout(() => child.kill('SIGKILL'), 5_000);
@@ -140,15 +149,17 @@ export async function landed(serve, t) {
 }
 
 /**
- * Waits until the newest run `isThere`. A busy machine flies slowly: fails only once the run has stood still for as long
- * as any wait lasts.
+ * Waits until the newest run `isThere`. A busy machine flies slowly: fails only once the run, or before there is one the
+ * flight ahead of it, has stood still for as long as any wait lasts.
  */
 export async function untilRun(server, isThere) {
   let [seen, end] = ['', 0];
   for (;;) {
     const [run] = (await server.get('/runs')).runs;
     if (run && (await isThere(run))) return;
-    const now = run ? `it is ${run.state} at ${run.clocks?.e_s} s from entry, item ${run.last_seq}` : 'there is none';
+    const now = run
+      ? `it is ${run.state} at ${run.clocks?.e_s} s from entry, item ${run.last_seq}`
+      : `there is none after ${5 * Math.floor(server.processor_s() / 5)} s of processor time`;
     if (now !== seen) [seen, end] = [now, Date.now() + DEADLINE_MS];
     else if (Date.now() > end) throw new Error(`the run stood still for ${DEADLINE_MS} ms: ${now}`);
     await new Promise((resolve) => setTimeout(resolve, 60));
@@ -172,6 +183,7 @@ export async function flyTo(server, e_s) {
   await control(server, { pause: false });
   let pace;
   await untilRun(server, async ({ clocks }) => {
+    if (!clocks) return false; // it has just begun
     const left_s = e_s - clocks.e_s;
     const wanted = [100, 50, 20, 10, 5, 2, 1].find((each) => each * 2 <= left_s) ?? 1;
     if (left_s > 0 && wanted !== pace) {

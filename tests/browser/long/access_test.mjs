@@ -215,6 +215,8 @@ test('with accounts: a log-in in place, an end of the session in the middle that
 
   await logIn('administrator', 'an own long password');
   await shows('who', /administrator/);
+  await waitFor(() => focused(page), /command-line/); // once all of the run has come; a letter is text there
+  await page.keyboard.press('Escape');
   await page.keyboard.press('u');
   await page.getByLabel('name of the new user').fill('<i>new</i>');
   await page.getByLabel('password of the new user').fill('long enough for it');
