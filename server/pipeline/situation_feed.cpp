@@ -26,7 +26,7 @@ SituationMonitor::Origin origin_of(const archive::ItemRecord& record,
 
 SituationFeed::SituationFeed(const dictionary::Dictionary& dictionary, const archive::RunStart& start)
     : monitor_(dictionary, clocks_of(start)),
-      // another mission's dictionary has no model, though its packet may have this name
+      // Another mission may have a packet of this name, but no model of ours.
       expects_(dictionary.model ? dictionary.packet("ShadowExpects") : nullptr) {
     if (expects_ != nullptr) decommutator_.emplace(dictionary);
     const archive::PacketColumns columns{dictionary};

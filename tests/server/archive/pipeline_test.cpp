@@ -749,4 +749,16 @@ TEST_CASE("a situation is an item like every other: numbered, published, read ba
         CHECK(page->items[i].SerializeAsString() == ground.items()[i].SerializeAsString());
 }
 
+TEST_CASE("a followed mission that has a packet of the shadow's name is not decoded by our model", "[pipeline]") {
+    auto followed = small_dictionary();
+    followed.model = nullptr;
+    followed.packets.front().name = "ShadowExpects";
+    REQUIRE(followed.packet("ShadowExpects") != nullptr);
+    TemporaryFolder folder;
+    auto archive = std::move(Archive::open(folder / "a.db")).value();
+    Pipeline pipeline{archive, followed};
+    REQUIRE(pipeline.begin(archive::RunStart{}).ok());
+    CHECK(pipeline.finish({archive::Outcome::touchdown, "", "", ""}).ok());
+}
+
 }  // namespace archive_pipeline_test
