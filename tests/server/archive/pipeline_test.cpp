@@ -2,6 +2,7 @@
 #include "server/archive/reader.hpp"
 #include "server/archive/sqlite.hpp"
 #include "server/pipeline/pipeline.hpp"
+#include "server/pipeline/situation_feed.hpp"
 #include "telemetry/station/station_packets.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/support/acknowledged.hpp"
@@ -754,11 +755,10 @@ TEST_CASE("a followed mission that has a packet of the shadow's name is not deco
     followed.model = nullptr;
     followed.packets.front().name = "ShadowExpects";
     REQUIRE(followed.packet("ShadowExpects") != nullptr);
-    TemporaryFolder folder;
-    auto archive = std::move(Archive::open(folder / "a.db")).value();
-    Pipeline pipeline{archive, followed};
-    REQUIRE(pipeline.begin(archive::RunStart{}).ok());
-    CHECK(pipeline.finish({archive::Outcome::touchdown, "", "", ""}).ok());
+    pipeline::SituationFeed feed{followed, archive::RunStart{}};
+    feed.follow(archive::Batch{});
+    CHECK(feed.changed(Ert{1'000'000}).has_value());
+    CHECK_FALSE(feed.changed().has_value());  // as it was told
 }
 
 }  // namespace archive_pipeline_test
