@@ -73,7 +73,7 @@ test('while nothing comes no link is green and no channel up to date', async (t)
   );
   way.cut();
   await shows('stream-state', /NO CONNECTION/);
-  for (const link of ['link-UHF', 'link-X-band']) assert.match(await text(link), /\?[^]*no connection/);
+  for (const link of ['link-UHF', 'link-X-band']) assert.match(await text(link), /\?[^]*not known/);
   await waitFor(
     () => page.locator('[data-testid="channel-table"] tr.look-good').count(),
     (rows) => rows === 0,
