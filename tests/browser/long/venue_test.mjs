@@ -37,6 +37,7 @@ test('a real venue without commands offers none and has a dash for every clock t
   await shows('waiting', /Nothing has come yet\s+This venue has no commands here\./);
   const clocks = () => Promise.all(['entry', 'scet', 'ert', 'sclk', 'light-time'].map((id) => text(`clock-${id}`)));
   const onEarth = /^\d{4}-\d{3}T\d\d:\d\d:\d\d\.\d$/; // which the ground knows by its own clock
+  await shows('clock-ert', onEarth);
   const before = await clocks();
   assert.match(before.splice(2, 1)[0], onEarth);
   assert.deepEqual(before, ['E —', '—', '—', '—']);
