@@ -116,7 +116,7 @@ void Execution::on(const CommandFate& fate) {
         Fate& known = fates_[fate.command];
         known.name = fate.name;
         known.status[static_cast<std::size_t>(fate.stage)] = fate.status;
-        if (!fate.arguments.empty()) known.arguments = fate.arguments;
+        if (fate.stage == commands::Stage::queued) known.sent = fate.arguments;
         known.text = fmt::format("{} {}: {}", name_of(fate.stage), name_of(fate.status), fate.evidence);
     }
     settle();

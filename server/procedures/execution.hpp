@@ -107,7 +107,7 @@ struct CommandFate {
     commands::Status status{};
     std::string evidence;
     Ert at;
-    std::vector<commands::NamedValue> arguments = {};  ///< as the vehicle gets them; of `queued`, else empty
+    std::vector<commands::NamedValue> arguments = {};  ///< as the vehicle gets them; of the stage `queued`
 };
 
 inline constexpr std::size_t person_octets_max = 64;          ///< chosen: a name
@@ -172,7 +172,7 @@ class Execution {
         std::string name;
         std::array<commands::Status, commands::stage_count> status{};
         std::string text;
-        std::vector<commands::NamedValue> arguments;
+        std::optional<std::vector<commands::NamedValue>> sent;  ///< its arguments; none: it was not seen to be queued
     };
     using Range = std::pair<std::size_t, std::size_t>;  ///< of steps: first and end
 

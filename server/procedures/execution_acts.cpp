@@ -9,6 +9,20 @@
 namespace aeolis::server::procedures {
 namespace {
 
+/// "rate=0.2 where rate=0.1 is prepared": an argument that was sent with another value than the step prepares, or of
+/// which nobody knows with which.
+std::optional<std::string> other_arguments(const PreparedCommand& prepared,
+                                           const std::vector<commands::NamedValue>& sent) {
+    for (const commands::NamedValue& fixed : prepared.fixed) {
+        const auto found = std::ranges::find(sent, fixed.name, &commands::NamedValue::name);
+        if (found != sent.end() && found->value == fixed.value) continue;
+        const std::string was = found != sent.end() ? commands::arguments_text(std::span{&*found, 1})
+                                                    : fmt::format("no known {}", fixed.name);
+        return fmt::format("{} where {} is prepared", was, commands::arguments_text(std::span{&fixed, 1}));
+    }
+    return {};
+}
+
 std::string first_not_held(const std::vector<ConditionState>& states) {
     const auto one = std::ranges::find_if(states, [](const auto& state) { return state.verdict != Verdict::holds; });
     return one == states.end() ? std::string{} : fmt::format("{} ({})", name_of(one->verdict), one->evidence);
@@ -135,22 +149,6 @@ Result<void> Execution::skip(const Act& act) {
     return {};
 }
 
-namespace {
-
-/// "rate=0.2 where rate=0.1 is prepared": the first argument that was sent with another value than the step prepares.
-std::optional<std::string> other_arguments(const PreparedCommand& prepared,
-                                           const std::vector<commands::NamedValue>& sent) {
-    for (const commands::NamedValue& fixed : prepared.fixed) {
-        const auto found = std::ranges::find(sent, fixed.name, &commands::NamedValue::name);
-        if (found != sent.end() && found->value != fixed.value)
-            return fmt::format("{} where {} is prepared", commands::arguments_text(std::span{&*found, 1}),
-                               commands::arguments_text(std::span{&fixed, 1}));
-    }
-    return {};
-}
-
-}  // namespace
-
 Result<void> Execution::sent(const Act& act) {
     const auto index = open_step(act);
     if (!index) return index.error();
@@ -169,12 +167,12 @@ Result<void> Execution::sent(const Act& act) {
                                      step.id, *status.command)};
     }
     const auto fate = fates_.find(act.command);
-    if (fate == fates_.end())
+    if (fate == fates_.end() || !fate->second.sent)
         return Error{fmt::format("no command of the number {} was sent since this procedure was begun", act.command)};
     if (fate->second.name != step.command->name)
         return Error{fmt::format("command {} is {}, and step {} has {}", act.command, fate->second.name, step.id,
                                  step.command->name)};
-    if (const auto other = other_arguments(*step.command, fate->second.arguments); other && act.reason.empty())
+    if (const auto other = other_arguments(*step.command, *fate->second.sent); other && act.reason.empty())
         return Error{fmt::format("command {} has {}; to take it for that of step {} needs a reason", act.command,
                                  *other, step.id)};
     status.command = act.command;

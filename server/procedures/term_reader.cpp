@@ -24,6 +24,18 @@ constexpr std::array sinces{Since::run, Since::procedure, Since::step};
 constexpr auto name_of_entry = [](const auto& entry) -> std::string_view { return entry.name; };
 constexpr auto name_of_stage = [](commands::Stage stage) -> std::string_view { return name_of(stage); };
 
+/// One argument as the vehicle gets it; null: its default. The Error is the encoder's.
+Result<commands::NamedValue> as_encoded(const dictionary::Command& command, const dictionary::Argument& argument,
+                                        const commands::NamedValue* given) {
+    dictionary::Command alone = command;
+    alone.arguments = {argument};
+    const auto packet = commands::encode(alone, {given, given == nullptr ? 0U : 1U}, 0);
+    if (!packet) return packet.error();
+    auto read = commands::decode(alone, *packet);
+    if (!read) return read.error();
+    return std::move(read->front());
+}
+
 }  // namespace
 
 /// A value of a channel or an argument, in the words of its type.
@@ -192,27 +204,6 @@ std::vector<Condition> TermReader::conditions(const YamlNode* node) {
     return all;
 }
 
-namespace {
-
-/// The value with which the argument is sent, as the vehicle gets it; none: whoever sends it gives it.
-std::optional<commands::NamedValue> as_encoded(const dictionary::Command& command, const dictionary::Argument& argument,
-                                               const PreparedCommand& prepared) {
-    const auto given = std::ranges::find(prepared.arguments, argument.name, &commands::NamedValue::name);
-    const bool is_given = given != prepared.arguments.end();
-    if (!is_given &&
-        (prepared.from_solution || std::ranges::find(prepared.to_fill, argument.name) != prepared.to_fill.end()))
-        return {};
-    dictionary::Command alone = command;
-    alone.arguments = {argument};
-    const auto packet =
-        commands::encode(alone, is_given ? std::span{&*given, 1} : std::span<const commands::NamedValue>{}, 0);
-    if (!packet) return {};  // told where it was given
-    const auto read = commands::decode(alone, *packet);
-    return read ? std::optional{read->front()} : std::nullopt;
-}
-
-}  // namespace
-
 void TermReader::arguments(const YamlNode& node, const YamlNode* given, const dictionary::Command& command,
                            PreparedCommand& prepared) {
     std::vector<std::string> named = prepared.to_fill;
@@ -230,22 +221,23 @@ void TermReader::arguments(const YamlNode& node, const YamlNode* given, const di
             named.push_back(name);
             const auto number = value(given->items[i], argument->type, fmt::format("argument '{}'", name));
             if (!number) continue;
-            // The encoder's own judgement of this one argument.
-            dictionary::Command alone = command;
-            alone.arguments = {*argument};
             const commands::NamedValue filled{name, *number};
-            if (const auto encoded = commands::encode(alone, std::span{&filled, 1}, 0); !encoded)
+            if (const auto encoded = as_encoded(command, *argument, &filled))
+                prepared.fixed.push_back(*encoded);
+            else
                 add(given->items[i].mark, encoded.error().message);
             prepared.arguments.push_back(filled);
         }
     }
-    for (const auto& argument : command.arguments)
-        if (const auto fixed = as_encoded(command, argument, prepared)) prepared.fixed.push_back(*fixed);
     if (prepared.from_solution) return;
-    for (const auto& argument : command.arguments)
-        if (!argument.default_value && std::ranges::find(named, argument.name) == named.end())
+    for (const auto& argument : command.arguments) {
+        if (std::ranges::find(named, argument.name) != named.end()) continue;
+        if (!argument.default_value)
             add(node.mark,
                 fmt::format("{} needs argument '{}': give it, or list it in 'to_fill'", command.name, argument.name));
+        else if (const auto encoded = as_encoded(command, argument, nullptr))
+            prepared.fixed.push_back(*encoded);
+    }
 }
 
 std::optional<PreparedCommand> TermReader::command(const YamlNode& node) {

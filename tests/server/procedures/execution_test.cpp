@@ -138,6 +138,8 @@ TEST_CASE("a command's step is done by the stage of the command that was sent, n
     CHECK(send(0) == "a command that was sent has a number");
     CHECK(send(7) == "no command of the number 7 was sent since this procedure was begun");
     run.fate(8, Stage::executed, Status::ok, "EDL_DO_EDL");
+    CHECK(send(8) == "no command of the number 8 was sent since this procedure was begun");  // it was sent before
+    run.fate(8, Stage::queued, Status::ok, "EDL_DO_EDL");
     CHECK(send(8) == "command 8 is EDL_DO_EDL, and step a has NO_OP");
     run.fate(7, Stage::queued, Status::ok);
     run.fate(9, Stage::queued, Status::ok);
@@ -174,6 +176,8 @@ TEST_CASE("a command with other arguments than the step's is not taken for it wi
     run.fate(1, Stage::executed, Status::ok, "SECOND_CHANCE_ENABLE");
     CHECK(send("a", 1) == "command 1 has enabled=0 where enabled=1 is prepared; to take it for that of step a needs a "
                           "reason");
+    run.fate(5, Stage::queued, Status::ok, "SECOND_CHANCE_ENABLE");
+    CHECK_THAT(send("a", 5), Catch::StartsWith("command 5 has no known enabled where enabled=1 is prepared"));
     run.fate(2, Stage::queued, Status::ok, "SECOND_CHANCE_ENABLE", {{"enabled", 1.0}});
     CHECK(send("a", 2).empty());
     run.fate(2, Stage::executed, Status::ok, "SECOND_CHANCE_ENABLE");

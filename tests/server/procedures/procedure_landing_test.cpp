@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Procedures carried out on a landing that is flown, by what reaches Earth and a team that does as they say.
+#include "commands/encoder.hpp"
 #include "server/procedures/execution.hpp"
 #include "server/procedures/procedure_reader.hpp"
 #include "server/rehearsal/rehearsal.hpp"
@@ -144,10 +145,14 @@ class Room {
     }
 
     void hear_stages(Execution* execution) {
-        for (const auto& stage : rehearsal_.take_stages())
-            if (execution != nullptr)
-                execution->on(
-                    CommandFate{stage.command, stage.name, stage.stage, stage.status, stage.evidence, stage.ert});
+        for (const auto& stage : rehearsal_.take_stages()) {
+            if (execution == nullptr) continue;
+            CommandFate fate{stage.command, stage.name, stage.stage, stage.status, stage.evidence, stage.ert, {}};
+            if (!stage.octets.empty())
+                fate.arguments =
+                    commands::decode(*tests::shipped_dictionary().command(stage.name), stage.octets).value();
+            execution->on(fate);
+        }
     }
 
     void done(Execution& execution, Act act) {
