@@ -149,8 +149,8 @@ export async function landed(serve, t) {
 }
 
 /**
- * Waits until the newest run `isThere`. A busy machine flies slowly: fails only once the run, or before there is one the
- * flight ahead of it, has stood still for as long as any wait lasts.
+ * Waits until the newest run `isThere`. A busy machine flies slowly: it fails only once the run, or the flight before
+ * its beginning, has stood still for as long as any wait lasts.
  */
 export async function untilRun(server, isThere) {
   let [seen, end] = ['', 0];

@@ -19,8 +19,8 @@
 // In       v [m/s] and f [m/s²], 64 Hz; a sample is the mean over 1 s          Out   w [m/s]
 // Memory   sums over the samples
 // Source   [kasa-1976] for the fit of a circle, [od137] for the lift and that its plane turns
-// Valid    in steep flight through the air, by navigation that the radar corrects. Wind that changes with height gives its mean over
-//          the samples
+// Valid    in steep flight through the air, by navigation that the radar corrects. Of wind that changes with height it is
+//          the mean over the samples
 namespace aeolis::flight::gnc {
 
 class WindEstimate {

@@ -50,9 +50,9 @@ struct Sidestep {
     Conditions conditions;  ///< by which the side was chosen. R38
 };
 
-/// The sidestep to fly: `divert_M`, or its opposite where the drifting backshell would come to within
-/// divert_clearance_min_m of the end of the sidestep, then or in divert_clearance_for_s after it, and would stay farther
-/// from the opposite end: over that place the stage sinks until the rover stands.
+/// The sidestep to fly: `divert_M`, or its opposite. Over the end of the sidestep the stage sinks until the rover stands.
+/// The opposite is flown where the drifting backshell would come to within divert_clearance_min_m of that place, then or
+/// in divert_clearance_for_s after it, and would stay farther from the opposite one.
 /// @param v0_M    [m/s] horizontal velocity at the start
 /// @param wind_M  [m/s] with which the backshell drifts; v0_M is taken for it where it is not known
 Sidestep choose_sidestep(const Parameters& parameters, const Vector3& divert_M, const Vector3& v0_M,

@@ -108,7 +108,7 @@ describe('the header', () => {
       ).map((line) => line.name);
     expect(of('not begun: planned at E−13:20', '')).toEqual(['X-band telemetry']);
     expect(of('', 'switched off: X-band sends tones from E−12:30')).toEqual(['UHF']);
-    expect(of('', 'switched off: X-band sends tones from E−12:30', true)).toEqual(['UHF']); // nor does a lost connection
+    expect(of('', 'switched off: X-band sends tones from E−12:30', true)).toEqual(['UHF']); // nor when lost
     expect(of('switched off: planned at E+7:30', 'unexplained: nothing is predicted to silence it now')).toEqual([
       'UHF',
       'X-band telemetry',

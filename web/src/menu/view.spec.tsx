@@ -247,7 +247,7 @@ describe('by touch and by mouse', () => {
     expect(opens(() => void click(page))).toBeUndefined();
     vi.useRealTimers();
   });
-  it('the button beside the value under the mouse is at the right end of what is in sight of it, and gone when that moves', () => {
+  it('the button beside the value under the mouse ends where it is in sight, and is gone when that moves', () => {
     const [row, other] = [value('1'), value('3')];
     const isAt = (element: Element, right: number) => {
       element.getBoundingClientRect = () =>
