@@ -196,6 +196,7 @@ std::span<const Api::Route> Api::routes() {
         {"GET", "/api/v1/runs/{run}/procedures/{number}/acts", Right::watch, &Api::list_procedure_acts},
         {"POST", "/api/v1/runs/{run}/procedures/{number}/acts", Right::command, &Api::post_procedure_act, Query::none,
          "procedure"},
+        {"POST", "/api/v1/runs/{run}/positions", Right::command, &Api::post_position_act, Query::none, "position"},
         {"GET", "/api/v1/runs/{run}/{question}", Right::watch, &Api::run_question, Query::own},
         {"GET", "/api/v1/layouts", Right::watch, &Api::list_layouts, Query::own},
         {"PUT", "/api/v1/layouts/{layout}", Right::watch, &Api::put_layout, Query::none, "layout"},

@@ -159,9 +159,11 @@ class Api {
     void begin_procedure(const ApiRequest& call);
     void post_procedure_act(const ApiRequest& call);
     void list_procedure_acts(const ApiRequest& call);
-    using Acted = std::variant<archive::ProcedureActRecord, HttpResponse>;  ///< the latter says why not
+    /// The last says why not.
+    using Acted = std::variant<archive::ProcedureActRecord, archive::PositionActRecord, HttpResponse>;
     using Acting = std::function<Acted(archive::Reader&, archive::RunId, Ert now)>;
     void act(const ApiRequest& call, Acting acting);
+    void post_position_act(const ApiRequest& call);
     // layout_routes.cpp
     void list_layouts(const ApiRequest& call);
     void put_layout(const ApiRequest& call);

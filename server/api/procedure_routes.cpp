@@ -10,23 +10,55 @@
 #include <array>
 #include <fmt/format.h>
 
-// The routes of procedures: the library, and what people do with those of a run. Acts are answered once durable.
+// The routes of procedures and positions: the library, and what people do with those of a run. Acts are answered once
+// durable.
 namespace aeolis::server {
 namespace {
 
 constexpr std::array<std::string_view, 2> form_formats{"json", "text"};
 
-/// The callback that answers with the status behind an act, once it is durable. What is taken and not stored yet is
+const archive::ProcedureStatusRecord& item_behind(const pipeline::Pipeline::Acted& acted) {
+    return acted.status;
+}
+const archive::PositionActRecord& item_behind(const pipeline::Pipeline::PositionActed& acted) {
+    return acted.act;
+}
+
+/// The callback that answers with the item behind an act, once it is durable. What is taken and not stored yet is
 /// answered without Retry-After: sent again, it would be done twice.
-std::function<void(Result<PipelineThread::Acted>)> acted(const Respond& respond) {
-    return [respond](const Result<PipelineThread::Acted>& done) {
+template <typename Acted>
+std::function<void(Result<Acted>)> acted(const Respond& respond) {
+    return [respond](const Result<Acted>& done) {
         if (!done)
             return respond(done.error().internal ? error_response(500, done.error().message)
                                                  : disk_response(done.error().message));
         if (!done->outcome.refused.empty()) return respond(error_response(409, done->outcome.refused));
         if (!done->not_stored_yet.empty()) return respond(error_response(503, done->not_stored_yet));
-        respond(json_response(archive::to_item(done->outcome.status), 201));
+        respond(json_response(archive::to_item(item_behind(done->outcome)), 201));
     };
+}
+
+/// Gives an act to the pipeline. False: too much waits.
+struct ToPipeline {
+    PipelineThread& pipeline;
+    archive::RunId run;
+    const Respond& respond;
+
+    bool operator()(archive::ProcedureActRecord act) const {
+        return pipeline.act(run, std::move(act), acted<PipelineThread::Acted>(respond));
+    }
+    bool operator()(archive::PositionActRecord act) const {
+        return pipeline.act(run, std::move(act), acted<PipelineThread::PositionActed>(respond));
+    }
+    bool operator()(const HttpResponse&) const { return false; }  // answered already
+};
+
+/// Whoever directs the flight permits hazardous commands, and needs the right to them.
+Result<void> may_direct(const Operator& who, const v1::PositionActRequest& wanted) {
+    const bool directs = wanted.position() == "flight_director" && wanted.kind() != "offer" && wanted.kind() != "leave";
+    if (!directs || may(who, Right::hazardous)) return {};
+    return Error{fmt::format("flight_director needs a {}, and {} is {}", name_of(*least_role(Right::hazardous)),
+                             who.user, name_of(*who.role))};
 }
 
 /// The number of a procedure in a path; none: it is no such number.
@@ -79,7 +111,8 @@ void Api::act(const ApiRequest& call, Acting acting) {
         if (!newest) return error_response(500, newest.error());
         auto made = acting(reader, id, clock(id).value_or(*newest));
         if (auto* refused = std::get_if<HttpResponse>(&made)) return std::move(*refused);
-        if (parts_.pipeline.act(id, std::get<archive::ProcedureActRecord>(std::move(made)), acted(respond))) return {};
+        const bool taken = std::visit(ToPipeline{parts_.pipeline, id, respond}, std::move(made));
+        if (taken) return {};
         return full_response("too much waits to be stored: try again");
     };
     ask(call, {}, question, JobPriority::at_once);
@@ -110,6 +143,19 @@ void Api::post_procedure_act(const ApiRequest& call) {
         if (!begun) return error_response(500, begun.error());
         if (!*begun) return no_procedure(id, given);
         auto made = procedure_act_of(wanted, *number, wanted.by(), now);
+        if (!made) return error_response(422, made.error());
+        return std::move(*made);
+    });
+}
+
+void Api::post_position_act(const ApiRequest& call) {
+    v1::PositionActRequest wanted;
+    if (auto unreadable = read_body(call.request.body, wanted)) return call.respond(std::move(*unreadable));
+    if (call.who.accounts) wanted.set_by(person_of(call.who));
+    if (const auto allowed = may_direct(call.who, wanted); !allowed)
+        return call.respond(error_response(403, allowed.error()));
+    act(call, [wanted](archive::Reader&, archive::RunId, Ert now) -> Acted {
+        auto made = position_act_of(wanted, wanted.by(), now);
         if (!made) return error_response(422, made.error());
         return std::move(*made);
     });

@@ -19,6 +19,7 @@
 #include "server/archive/run_instant.hpp"
 #include "server/base/csv_text.hpp"
 #include "server/base/json.hpp"
+#include "server/pipeline/positions.hpp"
 #include "telemetry/text.hpp"
 
 #include <algorithm>
@@ -600,6 +601,24 @@ HttpResponse procedures_of_run(const AnswerContext&, archive::Reader& reader, ar
     return answer(Result<v1::RunProcedureList>{std::move(list)});
 }
 
+HttpResponse positions_of_run(const AnswerContext&, archive::Reader& reader, archive::RunId run,
+                              const QueryText& query) {
+    const auto at = instant_of(query, "at", reader, run);
+    if (!at) return error_response(400, at.error());
+    const auto state = reader.run(run);
+    if (!state) return error_response(400, state.error());
+    auto acts = reader.position_acts(run, *at ? std::optional{archive::ert_of(*state, **at)} : std::nullopt);
+    if (!acts) return error_response(400, acts.error());
+    v1::RunPositions answered;
+    *answered.mutable_board() =
+        acts->empty() ? pipeline::board_of(procedures::PositionBoard{}) : acts->back().position_act().board();
+    for (auto& item : *acts) {
+        item.mutable_position_act()->clear_board();  // of each of them it would be many times as long as the acts
+        *answered.add_acts() = std::move(item);
+    }
+    return answer(Result<v1::RunPositions>{std::move(answered)});
+}
+
 const std::array questions{
     RunRoute{"", {}, {}, run_itself},
     RunRoute{"channels",
@@ -620,6 +639,7 @@ const std::array questions{
     RunRoute{"alarms", {"state", "after", "limit", "order", "format"}, list_formats, alarms},
     RunRoute{"notes", {"text", "after", "limit", "order", "format"}, list_formats, notes},
     RunRoute{"procedures", {"at"}, {}, procedures_of_run},
+    RunRoute{"positions", {"at"}, {}, positions_of_run},
     RunRoute{"interventions", {"after", "limit", "order", "format"}, list_formats, interventions, true},
     RunRoute{"plan", {}, {}, plan, true},
     RunRoute{"preconditions", {"command", "at"}, {}, preconditions},

@@ -118,6 +118,9 @@ Result<v1::StateAt> state_at(archive::Reader& reader, archive::RunId run, const 
     auto procedures = reader.procedures(run, cut.on_earth);
     if (!procedures) return procedures.error();
     for (auto& item : *procedures) *answer.add_procedures() = std::move(item);
+    auto position_act = reader.newest_position_act(run, cut.on_earth);
+    if (!position_act) return position_act.error();
+    if (*position_act) *answer.mutable_position_act() = std::move(**position_act);
     if (stand.tone) *answer.mutable_tone() = std::move(*stand.tone);
     if (stand.situation) *answer.mutable_situation() = std::move(*stand.situation);
     return answer;

@@ -38,6 +38,20 @@ void write_status(v1::ProcedureStatus& status) {
     }
 }
 
+void write_answer(v1::PositionAnswer& answer) {
+    if (answer.has_at_us()) answer.set_at(text_of(answer.at_us()));
+}
+
+void write_board(v1::PositionBoard& board) {
+    for (auto& seat : *board.mutable_seats())
+        if (seat.has_since_us()) seat.set_since(text_of(seat.since_us()));
+    if (!board.has_poll()) return;
+    auto& poll = *board.mutable_poll();
+    poll.set_at(text_of(poll.at_us()));
+    for (auto& answer : *poll.mutable_answers()) write_answer(answer);
+    if (poll.has_decision()) write_answer(*poll.mutable_decision());
+}
+
 void write_item(v1::Item& item) {
     const auto ert = text_of(item.ert_us());
     switch (item.item_case()) {
@@ -69,6 +83,10 @@ void write_item(v1::Item& item) {
     }
     case v1::Item::kNote: item.mutable_note()->set_at(ert); break;
     case v1::Item::kProcedureAct: item.mutable_procedure_act()->set_at(ert); break;
+    case v1::Item::kPositionAct:
+        item.mutable_position_act()->set_at(ert);
+        write_board(*item.mutable_position_act()->mutable_board());
+        break;
     case v1::Item::kProcedure: write_status(*item.mutable_procedure()); break;
     case v1::Item::kSamples:
     case v1::Item::kTimepoint:
@@ -91,6 +109,7 @@ void write_reply(v1::CommandReply& reply) {
 
 void write_time_texts(Message& answer) {
     if (auto* item = dynamic_cast<v1::Item*>(&answer)) return write_item(*item);
+    if (auto* board = dynamic_cast<v1::PositionBoard*>(&answer)) return write_board(*board);
     if (auto* reply = dynamic_cast<v1::CommandReply*>(&answer)) return write_reply(*reply);
     if (auto* alarm = dynamic_cast<v1::AlarmState*>(&answer))
         return alarm->set_shelved_until(alarm->has_shelved_until_us() ? text_of(alarm->shelved_until_us()) : "");

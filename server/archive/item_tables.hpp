@@ -85,6 +85,11 @@ struct EnumWords<ProcedureActKind> {
     static const char* of(ProcedureActKind kind) { return name_of(kind); }
 };
 template <>
+struct EnumWords<PositionActKind> {
+    static constexpr std::size_t count = position_act_kinds;
+    static const char* of(PositionActKind kind) { return name_of(kind); }
+};
+template <>
 struct EnumWords<CarrierLock> {
     static constexpr std::size_t count = 4;
     static const char* of(CarrierLock lock) { return to_text(lock); }
@@ -361,6 +366,22 @@ struct ItemTable<ProcedureStatusRecord> {
     }
 };
 
+template <>
+struct ItemTable<PositionActRecord> {
+    static constexpr char name[] = "position_acts";
+    static constexpr bool derived = false;
+    static constexpr auto of_batch = &Batch::position_acts;
+    static void columns(auto& record, auto&& visit) {
+        visit("kind", record.kind, Column::searched);
+        visit("position", record.position, Column::searched);
+        visit("author", record.by, Column::searched);
+        visit("offered_to", record.to, Column::searched);
+        visit("subject", record.subject, Column::searched);
+        visit("reason", record.reason, Column::searched);
+        visit("board", record.board);
+    }
+};
+
 template <typename Record>
 concept HasParts = requires(Record& record) { ItemTable<Record>::parts(record); };
 template <HasParts Record>
@@ -374,10 +395,10 @@ struct ItemKind {
 
 /// All kinds that have a table. Samples have none: they are decommutated again from their packets.
 template <template <typename> typename Of>
-using OfItemKinds =
-    std::tuple<Of<PacketRecord>, Of<EventRecord>, Of<ToneRecord>, Of<StageRecord>, Of<FiringRecord>,
-               Of<ExplanationRecord>, Of<LinkRecord>, Of<AlarmRecord>, Of<StalenessRecord>, Of<SituationRecord>,
-               Of<AlarmActionRecord>, Of<NoteRecord>, Of<ProcedureActRecord>, Of<ProcedureStatusRecord>>;
+using OfItemKinds = std::tuple<Of<PacketRecord>, Of<EventRecord>, Of<ToneRecord>, Of<StageRecord>, Of<FiringRecord>,
+                               Of<ExplanationRecord>, Of<LinkRecord>, Of<AlarmRecord>, Of<StalenessRecord>,
+                               Of<SituationRecord>, Of<AlarmActionRecord>, Of<NoteRecord>, Of<ProcedureActRecord>,
+                               Of<ProcedureStatusRecord>, Of<PositionActRecord>>;
 
 /// Calls act(ItemKind<Record>) for each kind.
 void for_item_kinds(auto act) {

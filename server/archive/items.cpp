@@ -263,6 +263,23 @@ v1::Item to_item(const ProcedureStatusRecord& record) {
     return item;
 }
 
+v1::Item to_item(const PositionActRecord& record) {
+    v1::Item item = item_with(record);
+    auto& act = *item.mutable_position_act();
+    act.set_kind(wire<v1::PositionAct::Kind>(record.kind));
+    act.set_position(record.position);
+    act.set_by(record.by);
+    act.set_to(record.to);
+    act.set_subject(record.subject);
+    act.set_reason(record.reason);
+    if (!act.mutable_board()->ParseFromArray(record.board.data(), static_cast<int>(record.board.size()))) {
+        act.mutable_board()->Clear();
+        act.mutable_board()->set_closed(
+            "how the room stands cannot be read: its octets in the archive are damaged; see the acts");
+    }
+    return item;
+}
+
 std::vector<std::uint8_t> octets_of_hex(std::string_view hex) {
     std::vector<std::uint8_t> octets;
     const auto digit = [](char c) { return static_cast<unsigned>(c <= '9' ? c - '0' : c - 'a' + 10); };

@@ -34,6 +34,7 @@ v1::Item to_item(const AlarmActionRecord& record);
 v1::Item to_item(const NoteRecord& record);
 v1::Item to_item(const ProcedureActRecord& record);
 v1::Item to_item(const ProcedureStatusRecord& record);
+v1::Item to_item(const PositionActRecord& record);
 /// Converts a record of any kind that has a table.
 template <typename Record>
 v1::Item item_of(const Record& record, const dictionary::Dictionary* dictionary) {

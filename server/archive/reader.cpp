@@ -278,10 +278,10 @@ Result<FlownRun> Reader::flown(RunId run) {
     auto requests = state_->requests(run);
     if (!requests) return requests.error();
     flown.requests = std::move(*requests);
-    static constexpr char annotations_sql[] =
-        "SELECT key FROM notes WHERE key BETWEEN ?1 AND ?2 UNION ALL"
-        " SELECT key FROM alarm_actions WHERE key BETWEEN ?1 AND ?2 UNION ALL"
-        " SELECT key FROM procedure_acts WHERE key BETWEEN ?1 AND ?2 ORDER BY key";
+    static constexpr char annotations_sql[] = "SELECT key FROM notes WHERE key BETWEEN ?1 AND ?2 UNION ALL"
+                                              " SELECT key FROM alarm_actions WHERE key BETWEEN ?1 AND ?2 UNION ALL"
+                                              " SELECT key FROM procedure_acts WHERE key BETWEEN ?1 AND ?2 UNION ALL"
+                                              " SELECT key FROM position_acts WHERE key BETWEEN ?1 AND ?2 ORDER BY key";
     auto annotations = state_->query(annotations_sql);
     if (!annotations) return annotations.error();
     (*annotations)->bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max));
@@ -310,6 +310,7 @@ Result<std::vector<Annotation>> Reader::annotations(RunId run) {
     if (auto read = add(NoteRecord{}); !read) return read.error();
     if (auto read = add(AlarmActionRecord{}); !read) return read.error();
     if (auto read = add(ProcedureActRecord{}); !read) return read.error();
+    if (auto read = add(PositionActRecord{}); !read) return read.error();
     std::ranges::sort(all, {}, sequence_of_annotation);
     return all;
 }

@@ -240,6 +240,8 @@ class Reader {
     Result<std::vector<Annotation>> annotations(RunId run);
     /// Those of them that are acts on procedures.
     Result<std::vector<ProcedureActRecord>> all_procedure_acts(RunId run);
+    /// Those that are acts on positions.
+    Result<std::vector<PositionActRecord>> all_position_acts(RunId run);
     /// The scenario of a run of this dictionary, as Protobuf text. The Error says why there is none.
     Result<std::string> scenario_text(RunId run);
 
@@ -306,6 +308,10 @@ class Reader {
     Result<v1::NoteList> notes(RunId run, const NoteQuery& query);
     /// The newest status of each procedure of the run, by number, as known at `at` by the clock on Earth.
     Result<std::vector<v1::Item>> procedures(RunId run, std::optional<Ert> at = {});
+    /// The newest act on a position of the run, as known at `at` by the clock on Earth; none: there was none.
+    Result<std::optional<v1::Item>> newest_position_act(RunId run, std::optional<Ert> at = {});
+    /// All acts on positions of the run, oldest first; `at` as above.
+    Result<std::vector<v1::Item>> position_acts(RunId run, std::optional<Ert> at = {});
     /// Whether a procedure of the number was begun in the run.
     Result<bool> has_procedure(RunId run, std::uint32_t number);
     /// What people did with a procedure of the run, oldest first; empty: it has none of the number.

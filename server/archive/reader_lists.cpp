@@ -407,6 +407,20 @@ Result<void> each_row(sqlite::Statement& rows, auto take) {
     }
 }
 
+/// All records of a run, in order.
+template <typename Record>
+Result<std::vector<Record>> all_records(Reader::State& reader, RunId run) {
+    auto rows = reader.query(rows_sql<Record>());
+    if (!rows) return rows.error();
+    std::vector<Record> records;
+    auto read = each_row(of_run(**rows, run), [&](sqlite::Statement& row) -> Result<void> {
+        records.push_back(read_row<Record>(row));
+        return {};
+    });
+    if (!read) return read.error();
+    return records;
+}
+
 template <typename Record>
 Result<std::vector<v1::Item>> all_items(Reader::State& reader, sqlite::Statement& rows) {
     std::vector<v1::Item> items;
@@ -435,15 +449,31 @@ Result<std::vector<v1::Item>> Reader::procedures(RunId run, std::optional<Ert> a
 }
 
 Result<std::vector<ProcedureActRecord>> Reader::all_procedure_acts(RunId run) {
-    auto rows = state_->query(rows_sql<ProcedureActRecord>());
+    return all_records<ProcedureActRecord>(*state_, run);
+}
+
+Result<std::vector<PositionActRecord>> Reader::all_position_acts(RunId run) {
+    return all_records<PositionActRecord>(*state_, run);
+}
+
+Result<std::vector<v1::Item>> Reader::position_acts(RunId run, std::optional<Ert> at) {
+    static const std::string sql = select_sql<PositionActRecord>("key BETWEEN ?1 AND ?2 AND ert_us <= ?4");
+    auto rows = state_->query(sql.c_str());
     if (!rows) return rows.error();
-    std::vector<ProcedureActRecord> acts;
-    auto read = each_row(of_run(**rows, run), [&](sqlite::Statement& row) -> Result<void> {
-        acts.push_back(read_row<ProcedureActRecord>(row));
-        return {};
-    });
-    if (!read) return read.error();
-    return acts;
+    of_run(**rows, run).bind(4, at ? at->microseconds : std::numeric_limits<std::int64_t>::max());
+    return all_items<PositionActRecord>(*state_, **rows);
+}
+
+Result<std::optional<v1::Item>> Reader::newest_position_act(RunId run, std::optional<Ert> at) {
+    static const std::string sql =
+        select_sql<PositionActRecord>("key = (SELECT max(key) FROM position_acts WHERE key BETWEEN ?1 AND ?2"
+                                      " AND ert_us <= ?4)");
+    auto rows = state_->query(sql.c_str());
+    if (!rows) return rows.error();
+    of_run(**rows, run).bind(4, at ? at->microseconds : std::numeric_limits<std::int64_t>::max());
+    auto acts = all_items<PositionActRecord>(*state_, **rows);
+    if (!acts) return acts.error();
+    return acts->empty() ? std::optional<v1::Item>{} : std::optional{std::move(acts->front())};
 }
 
 Result<bool> Reader::has_procedure(RunId run, std::uint32_t number) {

@@ -12,6 +12,8 @@ namespace aeolis::archive {
 namespace {
 constexpr std::array<const char*, procedure_act_kinds> act_names{"begin", "tick", "sign",    "choose",      "skip",
                                                                  "sent",  "hold", "release", "acknowledge", "stop"};
+constexpr std::array<const char*, position_act_kinds> position_act_names{"take", "offer", "leave",
+                                                                         "poll", "go",    "no_go"};
 constexpr std::array verdict_names{"unknown", "completed", "verified", "unverified", "no_operation", "refused"};
 }  // namespace
 
@@ -33,6 +35,16 @@ std::optional<ProcedureActKind> procedure_act_kind(std::string_view name) {
     const auto found = std::ranges::find(act_names, name);
     if (found == act_names.end()) return std::nullopt;
     return static_cast<ProcedureActKind>(found - act_names.begin());
+}
+
+const char* name_of(PositionActKind kind) {
+    return position_act_names[static_cast<std::size_t>(kind)];
+}
+
+std::optional<PositionActKind> position_act_kind(std::string_view name) {
+    const auto found = std::ranges::find(position_act_names, name);
+    if (found == position_act_names.end()) return std::nullopt;
+    return static_cast<PositionActKind>(found - position_act_names.begin());
 }
 
 const char* name_of(Outcome outcome) {

@@ -223,6 +223,19 @@ struct ProcedureStatusRecord : ItemRecord {
     std::vector<std::uint8_t> status;  ///< all of it, as packed() of procedure_status.hpp makes it
 };
 
+enum class PositionActKind : std::uint8_t { take, offer, leave, poll, go, no_go };
+inline constexpr std::size_t position_act_kinds = 6;
+/// Its name in the API and in the archive.
+const char* name_of(PositionActKind kind);
+std::optional<PositionActKind> position_act_kind(std::string_view name);
+
+/// What a person did with a position of the control room.
+struct PositionActRecord : ItemRecord {
+    PositionActKind kind{};
+    std::string position, by, to, subject, reason;
+    std::vector<std::uint8_t> board;  ///< how the room stands behind it: v1::PositionBoard, serialized
+};
+
 inline constexpr std::size_t segment_samples = 1024;  ///< samples in a full segment; limits.md
 
 /// Samples of one packet and source, column by column. Written once, when full or at the end of the run: only the last
@@ -336,7 +349,7 @@ struct FlownRun {
 };
 
 /// A person's addition to a run, in progress or over.
-using Annotation = std::variant<NoteRecord, AlarmActionRecord, ProcedureActRecord>;
+using Annotation = std::variant<NoteRecord, AlarmActionRecord, ProcedureActRecord, PositionActRecord>;
 
 /// The items and rows that become durable together.
 struct Batch {
@@ -358,6 +371,7 @@ struct Batch {
     std::vector<NoteRecord> notes;
     std::vector<ProcedureActRecord> procedure_acts;
     std::vector<ProcedureStatusRecord> procedure_statuses;
+    std::vector<PositionActRecord> position_acts;
     std::vector<SegmentRecord> segments;
     std::vector<RequestRecord> requests;
     std::vector<PyramidRecord> pyramid;

@@ -191,6 +191,11 @@ CREATE VIEW procedure_log AS
            strftime('%Y-%jT%H:%M:%f', a.ert_us / 1e6 + 946728000, 'unixepoch') AS at, a.number, a.procedure, a.kind,
            a.step, a.position, a.author, a.reason, a.choice, nullif(a.command, 0) AS command
     FROM procedure_acts a;
+CREATE VIEW position_log AS
+    SELECT a.key >> 40 AS run, a.key & 0xFFFFFFFFFF AS seq,
+           strftime('%Y-%jT%H:%M:%f', a.ert_us / 1e6 + 946728000, 'unixepoch') AS at, a.position, a.kind, a.author,
+           nullif(a.offered_to, '') AS offered_to, nullif(a.subject, '') AS subject, nullif(a.reason, '') AS reason
+    FROM position_acts a;
 CREATE VIEW clock_log AS
     SELECT r.run, r.scenario, r.clock_version AS version, r.correlation_sclk AS sclk,
            strftime('%Y-%jT%H:%M:%f', r.correlation_scet_us / 1e6 + 946728000, 'unixepoch') AS scet,
@@ -300,10 +305,10 @@ Result<bool> is_empty(sqlite::Database& database) {
         return of_another_build(database, "was written before the first release, in another layout");
     if (*id != application_id || *version < 1) return not_ours(database);
     if (*version == schema_version) {
-        const auto whole = database.integer_of("SELECT count(*) FROM sqlite_schema WHERE name = 'procedure_acts'");
+        const auto whole = database.integer_of("SELECT count(*) FROM sqlite_schema WHERE name = 'position_acts'");
         if (!whole) return whole.error();
         if (*whole == 0)
-            return of_another_build(database, "was written by a build of before 0.2.0, without tables for procedures");
+            return of_another_build(database, "was written by a build of before 0.2.0, without the table of positions");
         return false;
     }
     const auto why =

@@ -3,6 +3,7 @@
 
 #include "server/base/wall_clock.hpp"
 #include "server/procedures/execution.hpp"
+#include "server/procedures/position_board.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,8 +26,9 @@ Result<void> check_author(const std::string& by) {
     return check_text("by", by, author_octets_max);
 }
 
-/// What all acts on procedures have.
-Result<archive::ProcedureActRecord> act_by(const std::string& position, const std::string& by, Ert now) {
+/// What all acts on procedures and positions have.
+template <typename Record>
+Result<Record> act_by(const std::string& position, const std::string& by, Ert now) {
     if (auto author = check_author(by); !author) return author.error();
     if (auto fits = check_text("by", by, procedures::person_octets_max); !fits) return fits.error();
     if (!procedures::position_named(position)) {
@@ -35,18 +37,26 @@ Result<archive::ProcedureActRecord> act_by(const std::string& position, const st
         for (const auto each : procedures::positions) known.push_back(procedures::name_of(each));
         return Error{fmt::format("position: there is no '{}'; positions are {}", position, fmt::join(known, ", "))};
     }
-    archive::ProcedureActRecord act;
+    Record act;
     act.position = position;
     act.by = by;
     act.ert = now;
     return act;
 }
 
+/// An Error when the field is not wanted and set, or wanted and blank.
+Result<void> check_wanted(const char* field, const std::string& text, bool wanted, const char* what) {
+    const bool blank = text.find_first_not_of(" \t\r\n") == std::string::npos;
+    if (wanted && blank) return Error{fmt::format("{}: {}", field, what)};
+    if (!wanted && !text.empty()) return Error{fmt::format("{}: is not for this kind of act", field)};
+    return {};
+}
+
 }  // namespace
 
 Result<archive::ProcedureActRecord> procedure_act_of(const v1::ProcedureBeginRequest& request, std::string text,
                                                      const std::string& by, Ert now) {
-    auto act = act_by(request.position(), by, now);
+    auto act = act_by<archive::ProcedureActRecord>(request.position(), by, now);
     if (!act) return act;
     act->kind = archive::ProcedureActKind::begin;
     act->procedure = request.procedure();
@@ -57,7 +67,7 @@ Result<archive::ProcedureActRecord> procedure_act_of(const v1::ProcedureBeginReq
 Result<archive::ProcedureActRecord> procedure_act_of(const v1::ProcedureActRequest& request, std::uint32_t number,
                                                      const std::string& by, Ert now) {
     using archive::ProcedureActKind;
-    auto act = act_by(request.position(), by, now);
+    auto act = act_by<archive::ProcedureActRecord>(request.position(), by, now);
     if (!act) return act;
     const auto kind = archive::procedure_act_kind(request.kind());
     if (!kind || *kind == ProcedureActKind::begin)
@@ -77,6 +87,33 @@ Result<archive::ProcedureActRecord> procedure_act_of(const v1::ProcedureActReque
     act->reason = request.reason();
     if (*kind == ProcedureActKind::choose) act->choice = request.choice();
     if (*kind == ProcedureActKind::sent) act->command = request.command();
+    return act;
+}
+
+Result<archive::PositionActRecord> position_act_of(const v1::PositionActRequest& request, const std::string& by,
+                                                   Ert now) {
+    using archive::PositionActKind;
+    auto act = act_by<archive::PositionActRecord>(request.position(), by, now);
+    if (!act) return act;
+    const auto kind = archive::position_act_kind(request.kind());
+    if (!kind) return Error{fmt::format("kind: '{}' is none of take, offer, leave, poll, go, no_go", request.kind())};
+    if (auto to = check_wanted("to", request.to(), *kind == PositionActKind::offer, "to whom is it offered?"); !to)
+        return to.error();
+    if (auto to = check_text("to", request.to(), procedures::person_octets_max); !to) return to.error();
+    // An answer may say to which poll it is one.
+    const bool answers = *kind == PositionActKind::go || *kind == PositionActKind::no_go;
+    const bool polls = *kind == PositionActKind::poll;
+    if (auto subject = check_wanted("subject", request.subject(), polls, "what is the room asked about?");
+        !subject && !answers)
+        return subject.error();
+    if (auto subject = check_text("subject", request.subject(), procedures::subject_octets_max); !subject)
+        return subject.error();
+    if (auto reason = check_text("reason", request.reason(), procedures::reason_octets_max); !reason)
+        return reason.error();
+    act->kind = *kind;
+    act->to = request.to();
+    act->subject = request.subject();
+    act->reason = request.reason();
     return act;
 }
 

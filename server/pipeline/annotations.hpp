@@ -2,6 +2,7 @@
 #pragma once
 
 #include "aeolis/v1/alarms.pb.h"
+#include "aeolis/v1/positions.pb.h"
 #include "aeolis/v1/procedures.pb.h"
 #include "aeolis/v1/run.pb.h"
 #include "common/result.hpp"
@@ -12,7 +13,7 @@
 #include <span>
 #include <string>
 
-// Checks what people add to a run: notes, actions on alarms and acts on procedures.
+// Checks what people add to a run: notes, actions on alarms, acts on procedures and on positions.
 namespace aeolis::server {
 
 inline constexpr std::size_t note_octets_max = 4'000;  ///< a page of text
@@ -40,5 +41,8 @@ Result<archive::ProcedureActRecord> procedure_act_of(const v1::ProcedureBeginReq
 /// @param number  of the procedure in the run
 Result<archive::ProcedureActRecord> procedure_act_of(const v1::ProcedureActRequest& request, std::uint32_t number,
                                                      const std::string& by, Ert now);
+/// Makes the record of an act on a position, without the board behind it.
+Result<archive::PositionActRecord> position_act_of(const v1::PositionActRequest& request, const std::string& by,
+                                                   Ert now);
 
 }  // namespace aeolis::server

@@ -43,6 +43,10 @@ class Numbering {
         for (std::size_t i = passed_; i < taken_.size() && taken_[i] == next; ++i) ++next;
         return seq < next;
     }
+    /// Passes the numbers of stored items up to this one, to which it must have come.
+    void pass(Sequence seq) {
+        for (; next_ <= seq && passed_ < taken_.size() && taken_[passed_] == next_; ++passed_) ++next_;
+    }
     /// From here on all numbers are free.
     void forget_taken() { taken_.clear(), passed_ = 0; }
 

@@ -67,12 +67,17 @@ struct Pipeline::State {
         std::uint16_t station_carriers = 0, station_events = 0, station_spectra = 0;  ///< packets so far
 
         bool repeats() const { return compare != nullptr; }
-        /// Adds the origin's annotations whose numbers have come.
-        void annotate() {
+        /// Adds the origin's annotations whose numbers have come; in a silence, where no item follows, those that were
+        /// made before the fork.
+        void annotate(Positions& positions) {
             for (; annotated < origin->annotations.size(); ++annotated) {
                 const archive::Annotation& annotation = origin->annotations[annotated];
                 const Sequence seq = std::visit([](const auto& record) { return record.seq; }, annotation);
-                if (seq > numbering.last()) return;
+                const Ert made = std::visit([](const auto& record) { return record.ert; }, annotation);
+                if (seq > numbering.last() && !(made <= origin->until && numbering.has_come_to(seq))) return;
+                numbering.pass(seq);
+                if (const auto* act = std::get_if<archive::PositionActRecord>(&annotation); act != nullptr)
+                    if (auto taken = positions.repeat({act, 1}); !taken && !differs) differs = taken.error();
                 pending.add(annotation);
                 pending.first_seq = pending.first_seq == 0 ? seq : std::min(pending.first_seq, seq);
                 pending.last_seq = std::max(pending.last_seq, seq);
@@ -92,6 +97,7 @@ struct Pipeline::State {
     };
 
     Result<void> room();
+    std::string not_going_on(RunId id) const;
     void repeat_acts();
     std::size_t pending_octets() const;
     void take(const telemetry::ReceivedOctets& piece);
@@ -126,6 +132,7 @@ struct Pipeline::State {
     bool items_wanted = true;
     std::uint64_t raw_kept = archive::raw_octets_kept;
     std::optional<Run> run;
+    Positions positions;
     std::chrono::steady_clock::time_point last_commit{};
 };
 
@@ -161,6 +168,7 @@ Result<RunId> Pipeline::begin(const archive::RunStart& start) {
     auto id = state_->archive.begin_run(start, state_->dictionary);
     if (!id) return id.error();
     state_->run.emplace(*id, start, *state_, Numbering{});
+    state_->positions.begin();
     return *id;
 }
 
@@ -176,6 +184,7 @@ Result<RunId> Pipeline::begin(const archive::RunStart& start, Repeated repeated)
     state_->run.emplace(*id, start, *state_, Numbering{1, std::move(numbers), Numbering::Last::given});
     state_->run->acts = acts_before(repeated.annotations, repeated.until);
     state_->run->origin = std::move(repeated);
+    state_->positions.begin();
     return *id;
 }
 
@@ -195,7 +204,8 @@ Result<Sequence> Pipeline::forked() {
 }
 
 Result<void> Pipeline::resume(RunId run, const archive::RunStart& start, Sequence durable, Compare compare,
-                              std::vector<Sequence> annotations, std::vector<archive::ProcedureActRecord> acts) {
+                              std::vector<Sequence> annotations, std::vector<archive::ProcedureActRecord> acts,
+                              std::vector<archive::PositionActRecord> positions) {
     if (state_->run) return Error{"run " + std::to_string(state_->run->id.value) + " still goes on"};
     AEOLIS_CHECK(compare != nullptr);
     state_->run.emplace(run, start, *state_, Numbering{1, std::move(annotations)});
@@ -209,6 +219,8 @@ Result<void> Pipeline::resume(RunId run, const archive::RunStart& start, Sequenc
         return stored.error();
     }
     for (const auto& [link, octets] : *stored) state_->run->raw[link].stored = octets;
+    state_->positions.begin();
+    if (auto taken = state_->positions.repeat(positions); !taken) state_->run->differs = taken.error();
     return {};
 }
 
@@ -264,6 +276,7 @@ Result<bool> Pipeline::caught_up() {
 
 void Pipeline::abandon() {
     state_->run.reset();
+    state_->positions.end();
 }
 
 std::size_t Pipeline::State::pending_octets() const {
@@ -359,13 +372,38 @@ Result<archive::Annotation> Pipeline::annotate(RunId run, archive::Annotation an
     return annotation;
 }
 
+/// Why people cannot act in the run now; empty: it goes on, and they can.
+std::string Pipeline::State::not_going_on(RunId id) const {
+    const auto of_run = "run " + std::to_string(id.value);
+    if (!run || run->id != id)
+        return of_run + " does not go on: people act on procedures and positions while a run does";
+    if (run->repeats() || run->origin)
+        return of_run + " is flown again up to where it was " + (run->origin ? "forked" : "cut off") +
+               ": try again when it goes on";
+    return "";
+}
+
+Result<Pipeline::PositionActed> Pipeline::act(RunId run, archive::PositionActRecord act) {
+    if (auto why = state_->not_going_on(run); !why.empty()) return PositionActed{std::move(why), {}};
+    if (auto room = state_->room(); !room) return room.error();
+    auto& current = *state_->run;
+    act.ert = current.procedures.moved(act.ert);
+    auto acted = state_->positions.act(std::move(act));
+    if (!acted) return PositionActed{acted.error().message, {}};
+    acted->seq = current.numbering.next(current.pending);
+    current.pending.position_acts.push_back(*acted);
+    return PositionActed{{}, std::move(*acted)};
+}
+
+const Positions& Pipeline::positions() const {
+    return state_->positions;
+}
+
 Result<Pipeline::Acted> Pipeline::act(RunId run, archive::ProcedureActRecord act) {
-    const auto of_run = "run " + std::to_string(run.value);
-    if (!state_->run || state_->run->id != run)
-        return Acted{of_run + " does not go on: procedures are carried out while a run does"};
-    if (state_->run->repeats() || state_->run->origin)
-        return Acted{of_run + " is flown again up to where it was " + (state_->run->origin ? "forked" : "cut off") +
-                     ": try again when it goes on"};
+    if (auto why = state_->not_going_on(run); !why.empty()) return Acted{std::move(why)};
+    // Whoever sees a danger may hold a procedure.
+    if (act.kind != archive::ProcedureActKind::hold)
+        if (auto may = state_->positions.may_act(act.position, act.by); !may) return Acted{may.error().message};
     if (auto room = state_->room(); !room) return room.error();
     auto& current = *state_->run;
     auto acted = current.procedures.act(std::move(act), current.intake.latest());
@@ -596,7 +634,7 @@ Result<void> Pipeline::commit() {
         return {};
     }
     if (!run.pending.packets.empty() || run.progress != run.durable_progress) run.pending.totals = run.totals();
-    if (run.origin) run.annotate();
+    if (run.origin) run.annotate(state_->positions);
     if (run.pending.empty()) return {};
     if (run.origin && !run.differs && run.pending.last_seq != 0)
         if (auto same = run.origin->compare(*state_->published(run.origin->run, run.pending, true)); !same)
@@ -622,6 +660,7 @@ Result<void> Pipeline::finish(const archive::RunEnd& end) {
     run.pending.end = end;
     if (auto done = commit(); !done) return done;
     state_->run.reset();
+    state_->positions.end();
     return {};
 }
 

@@ -6,6 +6,7 @@
 #include "dictionaries/dictionary.hpp"
 #include "server/archive/archive.hpp"
 #include "server/archive/records.hpp"
+#include "server/pipeline/positions.hpp"
 #include "telemetry/other_mission.hpp"
 #include "telemetry/station/received.hpp"
 
@@ -93,8 +94,10 @@ class Pipeline {
     /// as begin().
     /// @param annotations  numbers of items added by people: not produced again, they keep their numbers
     /// @param acts         those of them that were acts on procedures: they are taken again, each at its place
+    /// @param positions    those that were acts on positions: they are taken again
     Result<void> resume(RunId run, const archive::RunStart& start, Sequence durable, Compare compare,
-                        std::vector<Sequence> annotations = {}, std::vector<archive::ProcedureActRecord> acts = {});
+                        std::vector<Sequence> annotations = {}, std::vector<archive::ProcedureActRecord> acts = {},
+                        std::vector<archive::PositionActRecord> positions = {});
     /// Compares the waiting items. True once all durable items were produced again. A permanent Error when one differs,
     /// or when the run cannot be marked as running again.
     Result<bool> caught_up();
@@ -127,6 +130,16 @@ class Pipeline {
     /// Takes a person's act on a procedure of the run in progress; durable with the next commit, with the status that
     /// follows from it. The Error: nothing can be taken now.
     Result<Acted> act(RunId run, archive::ProcedureActRecord act);
+    /// What becomes of an act on a position.
+    struct PositionActed {
+        std::string refused{};             ///< as Acted
+        archive::PositionActRecord act{};  ///< with the board behind it
+    };
+    /// Takes a person's act on a position of the run in progress; durable with the next commit. The Error: nothing can
+    /// be taken now.
+    Result<PositionActed> act(RunId run, archive::PositionActRecord act);
+    /// Who may do what in the run in progress. From any thread.
+    const Positions& positions() const;
     /// Sets the fraction of the recording that is down, 0 … 1; durable with the next commit.
     void relay_progress(double progress);
     /// Sets how many octets of each link of a run are kept as they came; 0: none.

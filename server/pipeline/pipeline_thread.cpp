@@ -135,7 +135,10 @@ Result<void> PipelineThread::resume(archive::FlownRun& cut, const archive::RunSt
         cut.annotations = std::move(now->annotations);
         auto acts = stored->all_procedure_acts(cut.run);
         if (!acts) return void(result = acts.error());
-        result = pipeline_.resume(cut.run, start, cut.last_seq, compare, cut.annotations, std::move(*acts));
+        auto positions = stored->all_position_acts(cut.run);
+        if (!positions) return void(result = positions.error());
+        result = pipeline_.resume(cut.run, start, cut.last_seq, compare, cut.annotations, std::move(*acts),
+                                  std::move(*positions));
     });
     return result;
 }
@@ -288,15 +291,25 @@ bool PipelineThread::annotate(archive::RunId run, archive::Annotation annotation
     }});
 }
 
-bool PipelineThread::act(archive::RunId run, archive::ProcedureActRecord act, std::function<void(Result<Acted>)> done) {
+template <typename Answer, typename Record>
+bool PipelineThread::push_act(archive::RunId run, Record act, std::function<void(Result<Answer>)> done) {
     return !blocked() && jobs_.try_push(Action{[this, run, act = std::move(act), done = std::move(done)] {
         auto acted = pipeline_.act(run, act);
         if (!acted) return done(acted.error());
-        if (!acted->refused.empty()) return done(Acted{std::move(*acted)});
+        if (!acted->refused.empty()) return done(Answer{std::move(*acted)});
         answers_.push_back([done, acted = std::move(acted)](const std::string& fault) {
-            done(Acted{*acted, fault.empty() ? "" : taken_not_stored(fault)});
+            done(Answer{*acted, fault.empty() ? "" : taken_not_stored(fault)});
         });
     }});
+}
+
+bool PipelineThread::act(archive::RunId run, archive::ProcedureActRecord act, std::function<void(Result<Acted>)> done) {
+    return push_act(run, std::move(act), std::move(done));
+}
+
+bool PipelineThread::act(archive::RunId run, archive::PositionActRecord act,
+                         std::function<void(Result<PositionActed>)> done) {
+    return push_act(run, std::move(act), std::move(done));
 }
 
 bool PipelineThread::keep_forecast(archive::ForecastRecord forecast, std::function<void(Result<std::uint64_t>)> done) {

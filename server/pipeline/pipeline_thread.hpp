@@ -107,6 +107,14 @@ class PipelineThread {
     /// the disk refuses it for now, when it has no place, or with an Error: nothing can be taken. False, and nothing
     /// done, when too much waits.
     bool act(archive::RunId run, archive::ProcedureActRecord act, std::function<void(Result<Acted>)> done);
+    struct PositionActed {
+        pipeline::Pipeline::PositionActed outcome;
+        std::string not_stored_yet{};  ///< as Acted
+    };
+    /// Takes a person's act on a position of the run in progress, as an act on a procedure.
+    bool act(archive::RunId run, archive::PositionActRecord act, std::function<void(Result<PositionActed>)> done);
+    /// Who may do what in the run in progress. From any thread.
+    const pipeline::Positions& positions() const { return pipeline_.positions(); }
 
     /// Stores a forecast. Calls `done` on this thread with its number once it is durable, or with an Error. False, and
     /// nothing done, when too much waits.
@@ -171,6 +179,8 @@ class PipelineThread {
     /// Attempts once to commit what is due; after a failure the next attempt is after retry_interval.
     void commit_what_is_due();
     void finish(Finish& finish);
+    template <typename Answer, typename Record>
+    bool push_act(archive::RunId run, Record act, std::function<void(Result<Answer>)> done);
     /// Sets the fault from `result`, or clears it, and reports the change.
     bool noted(const Result<void>& result);
     void tell_answers(const std::string& fault);

@@ -188,12 +188,16 @@ Result<archive::ProcedureStatusRecord> ProcedureFeed::repeat(const archive::Proc
     return tell(number, act.ert);
 }
 
+Ert ProcedureFeed::moved(Ert at) const {
+    return newest_ ? std::clamp(at, *newest_, Ert{newest_->microseconds + second_us}) : at;
+}
+
 Result<ProcedureFeed::Acted> ProcedureFeed::act(archive::ProcedureActRecord act,
                                                 const std::vector<std::optional<LatestValue>>& latest) {
     if (acts_ >= acts_max)
         return Error{
             fmt::format("{} acts on procedures were taken in this run, which is as many as there may be", acts_max)};
-    if (newest_) act.ert = std::clamp(act.ert, *newest_, Ert{newest_->microseconds + second_us});
+    act.ert = moved(act.ert);
     if (act.kind == archive::ProcedureActKind::begin) {
         act.number = static_cast<std::uint32_t>(told_.size() + 1);
     } else {

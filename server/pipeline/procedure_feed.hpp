@@ -40,11 +40,13 @@ class ProcedureFeed {
     /// The same for the last time that was given: at the end of a run.
     std::vector<archive::ProcedureStatusRecord> pass();
 
+    /// The time of an act, moved to within a second of the run's newest, which its clock may have left behind.
+    Ert moved(Ert at) const;
     struct Acted {
         archive::ProcedureActRecord act;  ///< with its procedure's id; of `begin` with its number
         archive::ProcedureStatusRecord status;
     };
-    /// Takes an act. Its time is moved to within a second of the run's newest, which its clock may have left behind.
+    /// Takes an act, at its time as moved().
     /// @param latest  the newest value of each channel; for a procedure that begins
     /// The Error: the act has no place now, in a sentence; nothing has changed.
     Result<Acted> act(archive::ProcedureActRecord act, const std::vector<std::optional<LatestValue>>& latest);

@@ -269,6 +269,7 @@ void RehearsalManager::receive(SendCommands order, const AuthorityCheck& authori
     if (const auto refusal = refusal_of(order); !refusal.empty()) return order.refuse(refusal);
     if (runner_->unknown(order.requests).empty())  // sent again: answered in turn, and no change of anything
         return hand_over(std::move(order), state_.run(), timeline_undone_count_, std::string{});
+    if (const auto allowed = room_allows(order); !allowed) return order.refuse(allowed.error().message);
     if (waits(order)) return wait(std::move(order), authority);
     analyse(std::move(order));
 }
@@ -280,6 +281,19 @@ std::string RehearsalManager::refusal_of(const SendCommands& order) const {
     for (const auto& request : order.requests)
         if (request.run() != 0 && request.run() != state_.run()) return not_going_on(request.run());
     if (const auto ids = check_client_ids(order.requests); !ids) return ids.error().message;
+    return {};
+}
+
+Result<void> RehearsalManager::room_allows(const SendCommands& order) const {
+    if (order.only_check) return {};
+    const auto& positions = pipeline_.positions();
+    for (const auto& request : runner_->unknown(order.requests)) {  // one sent again has left already
+        const auto& action = request.action();
+        const auto allowed = action.empty() || action == "release" ? positions.may_send(request.controller())
+                             : action == "approve"                 ? positions.may_approve(request.controller())
+                                                                   : positions.may_stop(request.controller());
+        if (!allowed) return allowed;
+    }
     return {};
 }
 
@@ -332,6 +346,8 @@ void RehearsalManager::hand_over(SendCommands order, std::uint64_t run, std::uin
     if (!order.only_check && !timeline->empty() && undone_count != timeline_undone_count_)
         return order.refuse("what it was analysed with has come to nothing meanwhile: look at the timeline, then send "
                             "it again");
+    // Asked again: the analysis took time, and the room may have changed its mind.
+    if (const auto allowed = room_allows(order); !allowed) return order.refuse(allowed.error().message);
     order.replies = [this, replies = std::move(order.replies),
                      says = *timeline](std::vector<v1::CommandReply> answers) {
         for (auto& answer : answers)

@@ -133,6 +133,8 @@ class RehearsalManager {
     // The path of a command, in order.
     void receive(SendCommands order, const AuthorityCheck& authority);
     std::string refusal_of(const SendCommands& order) const;
+    /// What the positions of the run say of it.
+    Result<void> room_allows(const SendCommands& order) const;
     bool waits(const SendCommands& order) const;
     void wait(SendCommands order, const AuthorityCheck& authority);
     void analyse(SendCommands order);

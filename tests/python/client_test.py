@@ -218,6 +218,22 @@ class InProgress(unittest.TestCase):
             standing = aeolis.run_procedures(run=run).procedures
             self.assertEqual([each.procedure.held for each in standing], ["Ada (gnc): not yet"])
 
+    def test_a_program_takes_a_position_and_answers_the_poll(self) -> None:
+        server = Server()
+        self.addCleanup(server.end)
+        with Client(server.address) as aeolis:
+            run = aeolis.start("nominal", seed=1, pace=1).run
+            aeolis.act_on_position("take", "flight_director", run=run, by="Ada")
+            aeolis.act_on_position("take", "gnc", run=run, by="Bob")
+            aeolis.act_on_position("poll", "flight_director", run=run, by="Ada", subject="do edl")
+            with self.assertRaises(AeolisError) as refused:
+                aeolis.act_on_position("go", "flight_director", run=run, by="Ada")
+            self.assertEqual(refused.exception.status, 409)
+            aeolis.act_on_position("go", "gnc", run=run, by="Bob")
+            went = aeolis.act_on_position("go", "flight_director", run=run, by="Ada")
+            self.assertEqual(went.position_act.board.closed, "")
+            self.assertEqual(len(aeolis.positions(run=run).acts), 5)
+
     def test_a_lost_connection_is_opened_again_without_a_gap_or_a_double(self) -> None:
         server = Server()
         self.addCleanup(server.end)

@@ -95,6 +95,7 @@ const Row rows[] = {
      404},
     {"POST", "/api/v1/runs/{run}/procedures/{number}/acts", "controller", "/api/v1/runs/latest/procedures/1/acts", "{",
      400},
+    {"POST", "/api/v1/runs/{run}/positions", "controller", "/api/v1/runs/latest/positions", "{", 400},
     {"GET", "/api/v1/runs/{run}/{question}", "observer", "/api/v1/runs/latest/events", "", 404},
     {"GET", "/api/v1/layouts", "observer", "/api/v1/layouts", "", 200},
     {"PUT", "/api/v1/layouts/{layout}", "observer", "/api/v1/layouts/mine", "{", 400},
@@ -589,6 +590,60 @@ TEST_CASE("a stream is closed when its log-in ends", "[access][stream]") {
     while (client.receive()) {
     }
     CHECK_THAT(client.close_words(), Catch::Contains("log in again"));
+}
+
+TEST_CASE("with positions a command needs the account that holds command, and the go of a director", "[access][R59]") {
+    Guarded guarded;
+    REQUIRE(guarded.ask("director", "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})").status == 201);
+    const auto room = [&](const char* role, const char* body) {
+        return guarded.ask(role, "POST", "/api/v1/runs/latest/positions", body);
+    };
+    const auto send = [&](const char* role) {
+        return guarded.ask(role, "POST", "/api/v1/runs/latest/commands",
+                           R"({"command":"NO_OP","controller":"controller"})");
+    };
+    CHECK(send("instructor").status == 202);  // nobody has a position
+    CHECK_THAT(room("controller", R"({"kind":"take","position":"flight_director"})").body,
+               Catch::Contains("flight_director needs a director, and controller is controller"));
+    REQUIRE(room("director", R"({"kind":"take","position":"flight_director","by":"somebody else"})").status == 201);
+    REQUIRE(room("controller", R"({"kind":"take","position":"command"})").status == 201);
+    CHECK(send("controller").status == 409);
+    REQUIRE(room("director", R"({"kind":"poll","position":"flight_director","subject":"a no op"})").status == 201);
+    CHECK(room("director", R"({"kind":"go","position":"flight_director"})").status == 409);
+    REQUIRE(room("controller", R"({"kind":"go","position":"command"})").status == 201);
+    REQUIRE(room("director", R"({"kind":"go","position":"flight_director"})").status == 201);
+    CHECK(send("controller").status == 202);
+    const auto other = send("instructor");
+    CHECK(other.status == 409);
+    CHECK_THAT(other.body, Catch::Contains("command is held by controller, not by instructor"));
+    SECTION("what was sent before a no go and is sent again is answered with its number") {
+        const char* const once = R"({"command":"NO_OP","client_id":"once"})";
+        const char* const commands = "/api/v1/runs/latest/commands";
+        CHECK(guarded.ask("controller", "POST", commands, once).status == 202);
+        REQUIRE(room("controller", R"({"kind":"no_go","position":"command","reason":"the station is down"})").status ==
+                201);
+        CHECK(send("controller").status == 409);
+        const auto again = guarded.ask("controller", "POST", commands, once);
+        CHECK(again.status == 202);
+        CHECK_THAT(again.body, Catch::Contains("\"repeated\":true"));
+    }
+    SECTION("whoever is no director polls nobody") {
+        const auto poll = room("controller", R"({"kind":"poll","position":"flight_director","subject":"x"})");
+        CHECK(poll.status == 403);
+        CHECK_THAT(poll.body, Catch::Contains("flight_director needs a director"));
+    }
+    SECTION("over the stream, too") {
+        StreamClient console{guarded.server.port(), "aeolis.v1.json", guarded.as.at("instructor")};
+        REQUIRE(console.open());
+        console.send(R"({"command":{"request":1,"command":"NO_OP"}})", false);
+        std::string told;
+        while (told.find("command_reply") == std::string::npos) {
+            const auto text = console.receive();
+            REQUIRE(text);
+            told = *text;
+        }
+        CHECK_THAT(told, Catch::Contains("command is held by controller, not by instructor"));
+    }
 }
 
 TEST_CASE("what was done, by whom and with what outcome, is in the audit, and no password is", "[access][audit]") {

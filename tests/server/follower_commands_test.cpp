@@ -220,6 +220,12 @@ TEST_CASE("a command from a follower is its person's at the origin, and its fate
             return follower->ask("nina", "GET", procedures).body.find("nina (gnc): site B waits") != std::string::npos;
         }));
     }
+    SECTION("positions are taken the same way, and bind whoever is elsewhere") {
+        const std::string positions = "/api/v1/runs/1/positions";
+        CHECK(follower->ask("nina", "POST", positions, R"({"kind":"take","position":"command"})").status == 201);
+        CHECK(comes(
+            [&] { return follower->ask("nina", "GET", positions).body.find("\"by\":\"nina\"") != std::string::npos; }));
+    }
     SECTION("notes go the same way, and a program's token counts as its account") {
         CHECK(follower->ask("nina", "POST", "/api/v1/runs/1/notes", R"({"text":"from site B"})").status == 201);
         CHECK(comes([&] {

@@ -76,7 +76,15 @@ class Recorded {
             std::atomic<bool> begun_one{false};
             REQUIRE(pipeline->act(parent, begin,
                                   [&](const auto& acted) { begun_one = acted && acted->outcome.refused.empty(); }));
-            wait_for([&] { return noted.load() && begun_one.load(); });
+            archive::PositionActRecord seat;
+            seat.ert = note.ert;
+            seat.kind = archive::PositionActKind::take;
+            seat.position = "systems";
+            seat.by = "flight";
+            std::atomic<bool> taken{false};
+            REQUIRE(pipeline->act(parent, seat,
+                                  [&](const auto& acted) { taken = acted && acted->outcome.refused.empty(); }));
+            wait_for([&] { return noted.load() && begun_one.load() && taken.load(); });
             wait_for([&] { return runner.over(); });
             REQUIRE(failure.empty());
         }
@@ -167,6 +175,7 @@ TEST_CASE("a fork to which nothing is done is its parent again, item by item, no
     CHECK(child->outcome() == parent->outcome());
     CHECK(child->digest() == parent->digest());
     CHECK(recorded.items(Recorded::child) == recorded.items(Recorded::parent));
+    CHECK(reader.position_acts(Recorded::child)->size() == 1);
     REQUIRE(reader.procedures(Recorded::child)->size() == 1);  // it is still carried out behind the fork
     CHECK(Ert{reader.procedures(Recorded::child)->front().ert_us()} >
           Ert{reader.procedure_acts(Recorded::child, 1)->front().ert_us() + 60'000'000});

@@ -184,6 +184,30 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
         {"POST", "/api/v1/runs/1/procedures/one/acts", R"({"kind":"tick","position":"gnc","by":"Ada"})", 404, "'one'"},
         {"POST", "/api/v1/runs/1/procedures/1/acts", R"({"kind":"tick","colour":"red"})", 400, "colour"},
         {"GET", "/api/v1/runs/1/procedures", "", 200, "\"procedure\":\"day_after\""},
+        {"GET", "/api/v1/runs/1/positions", "", 200, "\"acts\":[]}"},
+        {"POST", "/api/v1/runs/1/positions", R"({"kind":"sit","position":"gnc","by":"Ada"})", 422,
+         "kind: 'sit' is none of take, offer"},
+        {"POST", "/api/v1/runs/1/positions", R"({"kind":"take","position":"captain","by":"Ada"})", 422,
+         "positions are flight_director, command"},
+        {"POST", "/api/v1/runs/1/positions", R"({"kind":"take","position":"gnc"})", 422, "by:"},
+        {"POST", "/api/v1/runs/1/positions", R"({"kind":"take","position":"gnc","by":"Ada","to":"Bob"})", 422,
+         "to: is not for this kind of act"},
+        {"POST", "/api/v1/runs/1/positions", R"({"kind":"offer","position":"gnc","by":"Ada","to":" "})", 422,
+         "to: to whom is it offered?"},
+        {"POST", "/api/v1/runs/1/positions", R"({"kind":"poll","position":"flight_director","by":"Ada"})", 422,
+         "subject: what is the room asked about?"},
+        {"POST", "/api/v1/runs/1/positions", R"({"kind":"take","position":"gnc","colour":"red"})", 400, "colour"},
+        {"POST", "/api/v1/runs/9/positions", R"({"kind":"take","position":"gnc","by":"Ada"})", 404, "9"},
+        {"POST", "/api/v1/runs/1/positions", R"({"kind":"take","position":"systems","by":"Ada"})", 201,
+         "\"by\":\"Ada\""},
+        {"POST", "/api/v1/runs/1/positions", R"({"kind":"take","position":"systems","by":"Bob"})", 409,
+         "systems is held by Ada"},
+        {"POST", "/api/v1/runs/1/procedures/1/acts", R"({"kind":"release","position":"systems","by":"Bob"})", 409,
+         "systems is held by Ada, not by Bob"},
+        {"GET", "/api/v1/runs/1/positions?at=2012-219T04:00:00", "", 200, "\"acts\":[]}"},
+        {"GET", "/api/v1/runs/1/positions?at=noon", "", 400, "at: 'noon' is no instant"},
+        {"GET", "/api/v1/runs/1/positions", "", 200, "\"kind\":\"take\""},
+        {"GET", "/api/v1/runs/1/state", "", 200, "\"position_act\":{\"seq\":"},
         {"GET", "/api/v1/runs/1/procedures?at=2012-219T04:00:00", "", 200, "{\"procedures\":[]}"},
         {"GET", "/api/v1/runs/1/procedures?at=noon", "", 400, "at: 'noon' is no instant"},
         {"GET", "/api/v1/runs/1/procedures/1/acts", "", 200, "\"kind\":\"begin\""},
@@ -965,7 +989,7 @@ TEST_CASE("the server gives the schema that it speaks, as files and as descripto
     RunningServer server;
     v1::SchemaFileList list;
     REQUIRE(from_json(web_request(server.port(), "GET", "/api/v1/schema").body, list));
-    CHECK(list.files_size() == 18);
+    CHECK(list.files_size() == 19);
     for (const auto& file : list.files()) {
         std::ifstream in{std::filesystem::path{AEOLIS_SOURCE_DIR "/schema"} / list.folder() / file};
         const auto given = web_request(server.port(), "GET", "/api/v1/schema/" + file);

@@ -137,6 +137,7 @@ class Controlled {
                                  "/notes",
                                  "/procedures",
                                  "/procedures/1/acts",
+                                 "/positions",
                                  "/interventions",
                                  "/plan",
                                  "/timepoints",

@@ -274,14 +274,14 @@ TEST_CASE("an act that has no place is refused in a sentence, and leaves no item
     CHECK(ground.take(act(ProcedureActKind::stop, 1, 3 * second_us)) == "only the flight director stops a procedure");
     CHECK(ground.take(act(ProcedureActKind::tick, 1, 3 * second_us, "fast", "captain")) == "'captain' is no position");
     CHECK(ground.take(act(ProcedureActKind::tick, 1, 3 * second_us, "fast"), second_run) ==
-          "run 2 does not go on: procedures are carried out while a run does");
+          "run 2 does not go on: people act on procedures and positions while a run does");
     auto faulty = act(ProcedureActKind::begin, 0, 3 * second_us);
     faulty.text += "rest: 1\n";
     CHECK_THAT(ground.take(faulty), Catch::StartsWith("procedure p breaks a rule: p.yaml:"));
     CHECK(ground.told() == before);
     REQUIRE(ground.pipeline->finish({}).ok());
     CHECK(ground.take(act(ProcedureActKind::tick, 1, 3 * second_us, "fast")) ==
-          "run 1 does not go on: procedures are carried out while a run does");
+          "run 1 does not go on: people act on procedures and positions while a run does");
 }
 
 TEST_CASE("the time of an act is within a second of what was received, whatever its sender's clock says",

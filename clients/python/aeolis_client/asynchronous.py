@@ -187,6 +187,20 @@ class AsyncClient:
         body = {"kind": kind, "step": step, "position": position, "by": by, **more}
         return await self._ask("Item", "POST", f"/runs/{run}/procedures/{number}/acts", body)
 
+    async def positions(self, *, run: Run = "latest", at: Optional[str] = None) -> Any:
+        """Who holds which position, the poll, and the acts until then: a RunPositions."""
+        answer = await self._answer("GET", f"/api/v1/runs/{run}/positions", query={"at": at})
+        return self._read("RunPositions", answer)
+
+    async def act_on_position(self, kind: str, position: str, *, run: Run = "latest", by: str = "", **more: Any) -> Any:
+        """Takes, offers or leaves a position, calls the poll or answers it; returns the item once it is durable.
+
+        @param kind take, offer, leave, poll, go, no_go
+        @param more to, subject, reason, as the kind wants
+        """
+        body = {"kind": kind, "position": position, "by": by, **more}
+        return await self._ask("Item", "POST", f"/runs/{run}/positions", body)
+
     async def report(self, run: Run = "latest") -> Any:
         """The AsFlownReport: timepoints and events, predicted and flown, with the first page of commands and notes."""
         return await self._ask("AsFlownReport", "GET", f"/runs/{run}/report")
