@@ -33,7 +33,7 @@ async function goTo(page, fits, key) {
 /** Takes another position: in a rehearsal of one. */
 async function become(page, words) {
   await panel(page);
-  await goTo(page, () => document.activeElement?.closest('.table-tools') !== null, 'ArrowUp');
+  await goTo(page, () => document.activeElement?.closest('.table-tools, .room') !== null, 'ArrowUp');
   await goTo(page, () => document.activeElement?.dataset.testid === 'position-change', 'Tab');
   await page.keyboard.press('Enter');
   await waitFor(() => focused(page), /^position$/);
@@ -121,7 +121,7 @@ test('a procedure is begun, its steps check themselves, are signed, released and
   await waitFor(() => state(other.page, 'late_cruise'), /checked/);
   await become(page, 'Flight director');
   await panel(page);
-  await goTo(page, () => document.activeElement?.closest('.table-tools') !== null, 'ArrowUp');
+  await goTo(page, () => document.activeElement?.closest('.table-tools, .room') !== null, 'ArrowUp');
   await goTo(page, () => document.activeElement?.dataset.testid === 'procedures-library', 'Tab');
   await page.keyboard.press('Enter');
   await page.locator('[data-procedure="day_after"]').waitFor();

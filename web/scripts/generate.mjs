@@ -8,7 +8,7 @@ import { fromBinary, toBinary } from '@bufbuild/protobuf';
 import { FileDescriptorSetSchema } from '@bufbuild/protobuf/wkt';
 import { pruned } from './pruned.mjs';
 
-const FILES = ['items', 'plan', 'prediction', 'procedures', 'run', 'scenario', 'stream'].map(
+const FILES = ['items', 'plan', 'positions', 'prediction', 'procedures', 'run', 'scenario', 'stream'].map(
   (name) => `aeolis/v1/${name}.proto`,
 );
 

@@ -106,6 +106,11 @@ export function mayAct(now: Access = access.value): boolean {
   return now.state !== 'in' || now.role !== 'observer';
 }
 
+/** Whether the user may send hazardous commands, and so direct the flight. */
+export function mayDirect(now: Access = access.value): boolean {
+  return now.state !== 'in' || now.rights.includes('hazardous');
+}
+
 /** Whether the user may start rehearsals and campaigns. The page explains a missing right; the server decides. */
 export function mayRehearse(now: Access = access.value): boolean {
   return now.state !== 'in' || now.rights.includes('rehearse');

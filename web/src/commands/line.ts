@@ -287,7 +287,7 @@ async function arm(): Promise<void> {
 export async function act(number: number, action: QueueAction): Promise<void> {
   const done = { release: 'released', hold: 'held', cancel: 'cancelled', approve: 'approved' }[action];
   try {
-    const reply = await sendCommand({ action, number: BigInt(number), controller: uplink.value.controller });
+    const reply = await sendCommand({ action, number: BigInt(number), controller: uplink.value.controller.trim() });
     message.value = reply.accepted
       ? { good: !reply.reason, text: `#${number} ${done}${reply.reason && `; ${reply.reason}`}` }
       : { good: false, text: reply.reason };

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The controller's name, needed on a server without accounts. Commands, alarms and notes share it.
+// The name of the person at this browser: the account, without accounts the name that they give. Commands, alarms,
+// notes, procedures and positions share it.
 import { access } from '../access/model';
 import { uplink } from './line';
+
+/** The name with which this browser's acts are signed; '': whoever acts has to give one. */
+export const myName = (): string => (access.value.state === 'in' ? access.value.user : uplink.value.controller.trim());
 
 export function Signature() {
   if (access.value.state === 'in') return null;

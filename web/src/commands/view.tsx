@@ -5,7 +5,7 @@ import { mayAct } from '../access/model';
 import { openedLater } from '../design/opened_later';
 import { Foot } from '../design/foot';
 import { Panel } from '../design/panel';
-import { hasNoCommands, pastRange, takesCommands } from '../run/shown';
+import { hasNoCommands, pastRange, runNow, takesCommands } from '../run/shown';
 import './disarm';
 import { History, Queue } from './history';
 import {
@@ -26,6 +26,7 @@ import {
 } from './line';
 import { isHazardous, rangeText, unitText } from './model';
 import { Armed, Review } from './review';
+import { myName } from './signature';
 import './style.css';
 
 const CommandFile = openedLater(async () => (await import('./file_view')).CommandFile);
@@ -110,6 +111,20 @@ function Offers() {
   );
 }
 
+/** Why no command of this person leaves by the rules of the room: a dry run says nothing of it. */
+function ClosedByTheRoom() {
+  const board = runNow()?.positions?.board;
+  const by = board?.seats.find(({ position }) => position === 'command')?.by ?? '';
+  const others = by !== '' && by !== myName();
+  const closed = others ? `command is held by ${by}` : (board?.closed ?? '');
+  if (closed === '') return null;
+  return (
+    <p class="caution" role="status" data-testid="commanding-closed">
+      ▲ {others ? 'Commands are sent by another' : 'Commanding is closed'}: {closed}
+    </p>
+  );
+}
+
 export function Commands() {
   const command = chosen.value;
   const canSend = takesCommands();
@@ -160,6 +175,7 @@ export function Commands() {
           onKeyDown={onKey}
         />
       </div>
+      {canSend && <ClosedByTheRoom />}
       {canSend && step.value === 'type' && line.value.trim() !== '' && <Offers />}
       {canSend && command && <Review command={command} onKey={onKey} />}
       {canSend && command && step.value === 'armed' && <Armed command={command} onKey={onKey} />}

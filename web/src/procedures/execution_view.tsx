@@ -1,23 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // One procedure of the run: how it stands, its steps by part, its watchdogs, and what people did.
 import { useEffect, useRef, useState } from 'preact/hooks';
-import { cutoff, runNow } from '../run/shown';
+import { cutoff, runNow, takesActs } from '../run/shown';
 import type { RunStore } from '../run/store';
 import { secondsOfErt } from '../run/time';
 import { beginIt } from './shown';
 import { Conditions, Reason, StepRow, clockOf, inWords, start } from './step';
-import {
-  actsOf,
-  busy,
-  isNow,
-  isOpen,
-  lookOf,
-  offered,
-  offeredOfWhole,
-  printOf,
-  revisionWords,
-  trippedOf,
-} from './model';
+import { actsOf, busy, isNow, lookOf, offered, offeredOfWhole, printOf, revisionWords, trippedOf } from './model';
 import type { ActItem, ActKind, Execution, Step, Watchdog } from './model';
 import { byWords, lacking, position, positionWords } from './position';
 
@@ -30,7 +19,7 @@ export const PARTS = [
 function WatchdogRow({ dog, one, run }: { dog: Watchdog; one: Execution | undefined; run: RunStore }) {
   const isTripped = dog.tripped_us !== undefined;
   const waits = isTripped && !dog.acknowledged;
-  const mayAct = one !== undefined && isOpen();
+  const mayAct = one !== undefined && takesActs();
   return (
     <li class={`step watchdog ${waits ? 'watchdog-tripped' : ''}`} data-watchdog={dog.watchdog}>
       <div class="step-head">
@@ -141,7 +130,7 @@ function History({ one, run }: { one: Execution; run: RunStore }) {
 
 function Head({ one, run }: { one: Execution; run: RunStore }) {
   const look = lookOf(one);
-  const mine = isOpen() ? offeredOfWhole(one, position.value) : [];
+  const mine = takesActs() ? offeredOfWhole(one, position.value) : [];
   const stops = busy.value || lacking() !== '';
   const button = (kind: ActKind, words: string, needsReason: boolean) =>
     mine.includes(kind) && (
@@ -178,7 +167,7 @@ function Head({ one, run }: { one: Execution; run: RunStore }) {
       {one.held !== '' && (
         <div class="step-acts status-caution" role="status">
           ‖ held by {byWords(one.held)} {button('release', 'release', false)}
-          {isOpen() && !mine.includes('release') && (
+          {takesActs() && !mine.includes('release') && (
             <small>whoever holds it, or the flight director, releases it</small>
           )}
         </div>

@@ -2,9 +2,9 @@
 // The procedures of the library, each with what it is for, its steps, its print, and the button that begins it.
 import { useEffect, useState } from 'preact/hooks';
 import { wordsFor } from '../run/api';
-import { runNow } from '../run/shown';
+import { runNow, takesActs } from '../run/shown';
 import { Steps, Watchdogs } from './execution_view';
-import { busy, isOpen, library, printOf, refreshForm, revisionWords } from './model';
+import { busy, library, printOf, refreshForm, revisionWords } from './model';
 import type { Entry, Form } from './model';
 import { lacking } from './position';
 import { beginIt } from './shown';
@@ -85,7 +85,7 @@ export function Library() {
   return (
     <ul class="library" data-testid="procedure-library">
       {known.procedures.map((entry) => (
-        <EntryRow key={entry.procedure} entry={entry} canBegin={run !== undefined && isOpen()} />
+        <EntryRow key={entry.procedure} entry={entry} canBegin={run !== undefined && takesActs()} />
       ))}
     </ul>
   );

@@ -4,11 +4,13 @@
 // here.
 import { computed, signal } from '@preact/signals';
 import type { Status } from '../design/status';
+import { myName } from '../commands/signature';
+import { DIRECTOR } from '../positions/model';
 import { Refused, wordsFor } from '../run/api';
+import { AsOf } from '../run/as_of';
 import { change, read } from '../run/connection';
-import { cutoff, pastRange, signalOfRun, store, tick } from '../run/shown';
-import type { RunStore } from '../run/store';
-import { myName, position } from './position';
+import { signalOfRun, store } from '../run/shown';
+import { position } from './position';
 
 export type ActKind = 'tick' | 'sign' | 'choose' | 'skip' | 'sent' | 'hold' | 'release' | 'acknowledge' | 'stop';
 type Part = 'preconditions' | 'body' | 'confirmation' | 'confirmed' | 'ended' | 'stopped';
@@ -151,77 +153,34 @@ export const printOf = (procedure: string): string => `/api/v1/procedures/${enco
 
 // ---- Those of the run ----------------------------------------------------------------------------------------------
 
-const REPLAY_MS = 1000; // chosen: statuses change once a second at most
+const statuses = new AsOf<{ procedures: StatusItem[] }, StatusItem[]>('procedures', (list) => list.procedures, []);
 
-/** `at`: the SCLK of the instant asked for; Infinity: now. */
-interface Answer {
-  at: number;
-  all: StatusItem[];
-}
-const answer = signalOfRun<Answer | undefined>(undefined);
-let asked: { run: object; at: number; ms: number } | undefined;
-let asking = false;
-
-/** Asks for the statuses once, and again at another instant. Those of now are renewed by the stream, each whole. */
+/** Asks for the statuses at the instant shown. Those of now are renewed by the stream, each whole. */
 export async function refreshProcedures(): Promise<void> {
-  const run = store.value;
-  if (!run) return;
-  takeHeard(run);
-  if (asking) return;
-  const now = { run, at: cutoff.value, ms: performance.now() };
-  if (asked?.run === now.run) {
-    if (asked.at === now.at) return;
-    // an instant that moves on is followed at a pace; one in another view is asked for at once
-    if (asked.at < now.at && now.at !== Infinity && now.ms - asked.ms < REPLAY_MS) return;
-  }
-  asking = true;
-  try {
-    const at = now.at === Infinity ? '' : `?at=${now.at}`;
-    const list = await read<{ procedures: StatusItem[] }>(`/runs/${run.id}/procedures${at}`);
-    asked = now;
-    if (store.value === run) answer.value = { at: now.at, all: list.procedures };
-    takeHeard(run);
-  } catch (error) {
-    if (error instanceof Refused && [400, 404].includes(error.status)) {
-      asked = now; // a server, or a run, without procedures
-      if (store.value === run) answer.value = { at: now.at, all: [] };
-    }
-  } finally {
-    asking = false;
-  }
+  takeHeard();
+  await statuses.refresh();
+  takeHeard();
 }
 
 /** The procedures of the run at the instant shown, by number; undefined: not known. None is of after that instant. */
-export const executions = computed<Execution[] | undefined>(() => {
-  const [known, at] = [answer.value, cutoff.value];
-  if (!known || (at === Infinity ? known.at !== Infinity : known.at > at)) return undefined;
-  return known.all.map((item) => item.procedure);
-});
+export const executions = computed<Execution[] | undefined>(() => statuses.value.value?.map((item) => item.procedure));
 export const underWay = computed(() => (executions.value ?? []).filter(({ over }) => !over));
 
-/** Whether acts are possible in what is shown: not in the past, nor when the run is over, which the tick tells. */
-export function isOpen(): boolean {
-  void tick.value;
-  return pastRange.value === undefined && store.value?.going === true;
-}
-
 /** Takes what the stream brought of the run shown. */
-function takeHeard(run: RunStore): void {
-  if (store.value !== run) return;
-  for (const { seq, status } of run.procedures.values())
+function takeHeard(): void {
+  for (const { seq, status } of store.value?.procedures.values() ?? [])
     take({ seq: String(seq), procedure: status as unknown as Execution });
 }
 
 /** Puts a status of now in the place of an older one of the same procedure. */
 function take(item: StatusItem): void {
-  const known = answer.value;
-  if (known?.at !== Infinity) return;
-  const { number } = item.procedure;
-  const before = known.all.find((each) => each.procedure.number === number);
-  if (before && Number(before.seq) >= Number(item.seq)) return;
-  const others = known.all.filter((each) => each !== before);
-  const all = [...others, item].sort((one, other) => one.procedure.number - other.procedure.number);
-  answer.value = { ...known, all };
+  statuses.renew((known) => {
+    const { number } = item.procedure;
+    const before = known.find((each) => each.procedure.number === number);
+    if (before && Number(before.seq) >= Number(item.seq)) return known;
+    const others = known.filter((each) => each !== before);
+    return [...others, item].sort((one, other) => one.procedure.number - other.procedure.number);
+  });
 }
 
 // ---- What people do ------------------------------------------------------------------------------------------------
@@ -279,8 +238,6 @@ export const actsOf = async (run: number, number: number): Promise<ActItem[]> =>
   (await read<{ acts: ActItem[] }>(`/runs/${run}/procedures/${number}/acts`)).acts;
 
 // ---- What is offered to a position ---------------------------------------------------------------------------------
-
-const DIRECTOR = 'flight_director';
 
 /** Which of the acts that are open the position has a part in. The server judges each. */
 export function offered(acts: readonly ActKind[], one: Partial<Step>, mine: string): ActKind[] {

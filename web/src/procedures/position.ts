@@ -1,17 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// The position that the person at this browser has, as they say: chosen once, kept here, told with each act.
-import { signal } from '@preact/signals';
-import { access, mayAct } from '../access/model';
-import { uplink } from '../commands/line';
+// The position that the person at this browser has in procedures: one of those that are theirs, else the one that they
+// say, chosen once and kept here. It is told with each act.
+import { computed, signal } from '@preact/signals';
+import { mayAct } from '../access/model';
+import { lacksName, myPositions } from '../positions/model';
 
 const KEPT = 'aeolis-position';
 
-export const position = signal(localStorage.getItem(KEPT) ?? '');
+const chosen = signal(localStorage.getItem(KEPT) ?? '');
 
-export function choosePosition(chosen: string): void {
-  position.value = chosen;
-  if (chosen === '') localStorage.removeItem(KEPT);
-  else localStorage.setItem(KEPT, chosen);
+/** Who has several acts from the chosen one of them, else from the first. */
+export const position = computed<string>(() => {
+  const held = myPositions.value;
+  return held.length === 0 || held.includes(chosen.value) ? chosen.value : (held[0] as string);
+});
+
+export function choosePosition(name: string): void {
+  chosen.value = name;
+  if (name === '') localStorage.removeItem(KEPT);
+  else localStorage.setItem(KEPT, name);
 }
 
 const inWords = (name: string): string =>
@@ -25,12 +32,6 @@ export const positionWords = (name: string): string => inWords(name).replace(/^.
  * names of people and reasons stay as they were written.
  */
 export const byWords = (by: string): string => by.replace(/^watchdog \w+$|\([a-z_]+\)(?=:|$)/, (id) => inWords(id));
-
-/** The name with which this browser's acts are signed. */
-export const myName = (): string => (access.value.state === 'in' ? access.value.user : uplink.value.controller.trim());
-
-/** Without accounts whoever acts gives a name. */
-export const lacksName = (): boolean => myName() === '';
 
 /** What this browser lacks before anything can be done; '': nothing. */
 export function lacking(): string {

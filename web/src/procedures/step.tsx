@@ -4,23 +4,11 @@ import { signal } from '@preact/signals';
 import { useLayoutEffect, useRef } from 'preact/hooks';
 import { prepare, step as lineStep } from '../commands/line';
 import { STATUS } from '../design/status';
-import { cutoff, pastRange, runNow, signalOfRun, store, takesCommands } from '../run/shown';
+import { cutoff, pastRange, runNow, signalOfRun, store, takesActs, takesCommands } from '../run/shown';
 import type { RunStore } from '../run/store';
 import { dayOfYear, fromEntry, secondsOfErt } from '../run/time';
 import { roughly } from '../situation/countdown';
-import {
-  STEP_LOOKS,
-  VERDICTS,
-  act,
-  awaitedOf,
-  busy,
-  executions,
-  isNow,
-  isOpen,
-  isOver,
-  offered,
-  problem,
-} from './model';
+import { STEP_LOOKS, VERDICTS, act, awaitedOf, busy, executions, isNow, isOver, offered, problem } from './model';
 import type { ActKind, Condition, Deed, Execution, Prepared, Signature, Step } from './model';
 import { byWords, lacking, position, positionWords } from './position';
 import { goOn } from './shown';
@@ -232,7 +220,7 @@ function Command({ one, step, command, run }: { one: Execution; step: Step; comm
           </small>
         </>
       )}
-      {isOpen() &&
+      {takesActs() &&
         offered(step.acts, step, position.value).includes('sent') &&
         untied(run, step, executions.value ?? []).map((number) => (
           <button
@@ -283,7 +271,7 @@ function Send({ one, step, command, stops }: { one: Execution; step: Step; comma
 }
 
 function Acts({ one, step }: { one: Execution; step: Step }) {
-  if (!isOpen() || step.acts.length === 0) return null;
+  if (!takesActs() || step.acts.length === 0) return null;
   const mine = offered(step.acts, step, position.value);
   const stops = busy.value || lacking() !== '';
   const name = inWords(step.step);
@@ -326,7 +314,7 @@ function Acts({ one, step }: { one: Execution; step: Step }) {
 
 function Choices({ one, step }: { one: Execution; step: Step }) {
   if (step.choices.length === 0) return null;
-  const may = isOpen() && offered(step.acts, step, position.value).includes('choose');
+  const may = takesActs() && offered(step.acts, step, position.value).includes('choose');
   return (
     <ol class="step-choices" aria-label="ways on">
       {step.choices.map((choice, index) => {

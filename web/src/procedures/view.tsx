@@ -7,11 +7,13 @@ import { access, mayAct } from '../access/model';
 import { uplink } from '../commands/line';
 import { Signature } from '../commands/signature';
 import { Foot } from '../design/foot';
+import { myPositions } from '../positions/model';
+import { Room } from '../positions/view';
 import { stream } from '../run/connection';
-import { pastRange, runNow } from '../run/shown';
+import { pastRange, runNow, takesActs } from '../run/shown';
 import { ExecutionView } from './execution_view';
 import { Library } from './library';
-import { executions, isOpen, library, lookOf, problem, refreshLibrary, refreshProcedures, underWay } from './model';
+import { executions, library, lookOf, problem, refreshLibrary, refreshProcedures, underWay } from './model';
 import type { Execution } from './model';
 import { choosePosition, lacking, position, positionWords } from './position';
 import { goOn, show, shownNow } from './shown';
@@ -77,21 +79,24 @@ function Tools() {
           </button>
         )}
       </span>
-      {isOpen() && library.value !== 'none' && <Me />}
+      {takesActs() && library.value !== 'none' && <Me />}
     </div>
   );
 }
 
 const changes = signal(false);
 
-/** Who the person is: asked for until it is known, then a word that can be pressed. */
+/** Who the person is: asked for until it is known, then a word that can be pressed while there is a choice. */
 function Me() {
   const lacks = lacking();
   const select = useRef<HTMLSelectElement>(null);
   const isAsked = changes.value;
+  const held = myPositions.value;
   useEffect(() => {
     if (isAsked && document.activeElement === document.body) select.current?.focus();
   }, [isAsked]);
+  if (access.value.state === 'in' && held.length === 1)
+    return <span data-testid="position-held">I am {positionWords(position.value)}</span>;
   if (lacks === '' && !isAsked)
     return (
       <button type="button" class="quiet" data-testid="position-change" onClick={() => (changes.value = true)}>
@@ -99,6 +104,7 @@ function Me() {
         {access.value.state !== 'in' && `, ${uplink.value.controller.trim()}`}
       </button>
     );
+  const all = library.value === 'none' ? [] : (library.value?.positions ?? []);
   const close = (event: Event) => {
     event.preventDefault();
     if (lacking() !== '') return;
@@ -127,8 +133,8 @@ function Me() {
           onChange={(event) => choosePosition(event.currentTarget.value)}
           onKeyDown={(event) => event.key === 'Enter' && close(event)}
         >
-          <option value="">choose …</option>
-          {(library.value === 'none' ? [] : (library.value?.positions ?? [])).map((each) => (
+          {held.length === 0 && <option value="">choose …</option>}
+          {(held.length > 0 ? held : all).map((each) => (
             <option key={each} value={each}>
               {positionWords(each)}
             </option>
@@ -176,7 +182,7 @@ function onArrow(event: KeyboardEvent): void {
   if (!['ArrowDown', 'ArrowUp'].includes(event.key) || target.matches('input, select')) return;
   const list = event.currentTarget as HTMLElement;
   const all = [...list.querySelectorAll<HTMLElement>('button:not(:disabled), summary')];
-  const row = (each: HTMLElement) => each.closest('li, .procedure-head, summary');
+  const row = (each: HTMLElement) => each.closest('li, .procedure-head, .room, summary');
   const ahead = event.key === 'ArrowDown';
   const isBehind = (each: HTMLElement) =>
     (target.compareDocumentPosition(each) &
@@ -230,6 +236,7 @@ export function Procedures() {
         }
         onKeyDown={onArrow}
       >
+        <Room />
         <Tools />
         {shown === 'library' ? (
           <Library />

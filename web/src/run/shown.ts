@@ -91,6 +91,12 @@ export function takesCommands(): boolean {
   return ['live', 'rehearsal'].includes(modeNow()) && mayAct() && !hasNoCommands();
 }
 
+/** Whether people can act in what is shown: not in the past, nor when the run is over, which the tick tells. */
+export function takesActs(): boolean {
+  void tick.value;
+  return pastRange.value === undefined && store.value?.going === true;
+}
+
 export function lookAtPast(range: { from: number; to: number }, recorded: boolean): void {
   withRecording.value = recorded;
   pastRange.value = range;

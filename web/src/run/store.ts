@@ -3,6 +3,7 @@
 // that no data of one run appear in another.
 import type { JsonValue } from '@bufbuild/protobuf';
 import type { Clocks, Explanation, Staleness, Packet } from '../gen/aeolis/v1/items_pb';
+import type { Board } from '../positions/model';
 import { SOURCE_RECORDED } from '../stream/columns';
 import type { BatchOfFacts, Column, Fact, Newest } from '../stream/messages';
 import type {
@@ -145,6 +146,8 @@ export class RunStore {
   proceduresVersion = 0;
   /** The newest status of each procedure that the stream brought, by its number. */
   procedures = new Map<number, { seq: number; status: JsonValue }>();
+  /** How the room stood behind the newest act on a position that the stream brought, of that number. */
+  positions: { seq: number; board: Board } | undefined;
   /** Counts items on which the prediction of the timeline depends: firings, tones, stages of commands. */
   timelineVersion = 0;
   /** Newest SCLK of all samples, events and tones. */
@@ -455,6 +458,9 @@ export class RunStore {
       case 'procedure':
         this.procedures.set(item.fact.number, { seq: item.seq, status: item.fact.status });
         ++this.proceduresVersion;
+        break;
+      case 'positionAct':
+        this.positions = { seq: item.seq, board: item.fact.board };
         break;
       case 'timepoint':
         this.addFiring(item.fact);

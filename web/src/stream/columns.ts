@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // Converts the stream's batches to columns: one series of samples per channel, facts in order of sequence number, and
-// after them the newest status of each procedure.
+// after them the newest status of each procedure and the room behind the newest act on a position.
 import { toJson } from '@bufbuild/protobuf';
 import type { Samples } from '../gen/aeolis/v1/items_pb';
+import type { PositionAct } from '../gen/aeolis/v1/positions_pb';
 import type { ProcedureStatus } from '../gen/aeolis/v1/procedures_pb';
 import type { Batch } from '../gen/aeolis/v1/stream_pb';
+import { PositionBoardSchema } from '../gen/worker/aeolis/v1/positions_pb';
 import { ProcedureStatusSchema } from '../gen/worker/aeolis/v1/procedures_pb';
+import type { Board } from '../positions/model';
 import { secondsOfErt } from '../run/time';
 import type { BatchOfFacts, Column, Fact, Newest } from './messages';
 import { named } from './names';
+
+/** As the API has it. */
+const AS_JSON = { useProtoFieldName: true, alwaysEmitImplicit: true };
 
 export const SOURCE_RECORDED = 2; // Source.RECORDED, so that the page need not load the schema
 
@@ -25,6 +31,8 @@ export class ColumnCollector {
   private facts: Fact[] = [];
   /** The newest status of each procedure: each is whole, and a long run has thousands. */
   private procedures = new Map<number, { seq: number; ert_s: number; status: ProcedureStatus }>();
+  /** The newest act on a position: the whole room stands behind it. */
+  private positions: { seq: number; ert_s: number; act: PositionAct } | undefined;
   private thinned = false;
   private clocks: BatchOfFacts['clocks'];
   private completeThrough = 0;
@@ -49,6 +57,8 @@ export class ColumnCollector {
         this.addSamples(value, secondsOfErt(item.ertUs));
       } else if (kind === 'procedure') {
         this.procedures.set(value.number, { seq, ert_s: secondsOfErt(item.ertUs), status: value });
+      } else if (kind === 'positionAct') {
+        this.positions = { seq, ert_s: secondsOfErt(item.ertUs), act: value };
       } else {
         this.facts.push({ kind, seq, ert_s: secondsOfErt(item.ertUs), fact: named(item.item) } as Fact);
       }
@@ -70,7 +80,7 @@ export class ColumnCollector {
     const taken: BatchOfFacts = {
       run: this.run,
       completeThrough: this.completeThrough,
-      facts: [...this.facts, ...this.statuses()],
+      facts: [...this.facts, ...this.statuses(), ...this.room()],
       columns,
       thinned: this.thinned,
       clocks: this.clocks,
@@ -78,6 +88,7 @@ export class ColumnCollector {
     this.columns = new Map();
     this.facts = [];
     this.procedures = new Map();
+    this.positions = undefined;
     this.thinned = false;
     this.clocks = undefined;
     this.any = false;
@@ -86,9 +97,16 @@ export class ColumnCollector {
 
   private statuses(): Fact[] {
     return [...this.procedures].map(([number, { seq, ert_s, status }]) => {
-      const json = toJson(ProcedureStatusSchema, status, { useProtoFieldName: true, alwaysEmitImplicit: true });
+      const json = toJson(ProcedureStatusSchema, status, AS_JSON);
       return { kind: 'procedure', seq, ert_s, fact: { number, status: json } };
     });
+  }
+
+  private room(): Fact[] {
+    const { seq = 0, ert_s = 0, act } = this.positions ?? {};
+    if (!act?.board) return [];
+    const board = toJson(PositionBoardSchema, act.board, AS_JSON) as unknown as Board;
+    return [{ kind: 'positionAct', seq, ert_s, fact: { board } }];
   }
 
   private addSamples({ sclk, ids, values, source, exact, sclkByReception }: Samples, ert_s: number): void {

@@ -4,6 +4,7 @@
 import type { JsonValue } from '@bufbuild/protobuf';
 import type { Clocks, Explanation, Staleness, Packet } from '../gen/aeolis/v1/items_pb';
 import type { CommandReply } from '../gen/aeolis/v1/run_pb';
+import type { Board } from '../positions/model';
 import type {
   NamedAlarm,
   NamedEvent,
@@ -50,12 +51,18 @@ export type Fact = { seq: number; ert_s: number } & (
   | { kind: 'unit'; fact: Packet }
   | { kind: 'situation'; fact: NamedSituation }
   | { kind: 'procedure'; fact: ProcedureFact }
+  | { kind: 'positionAct'; fact: PositionsFact }
 );
 
 /** The whole status of a procedure: `status` is a ProcedureStatus as JSON, just as the API has it. */
 export interface ProcedureFact {
   number: number;
   status: JsonValue;
+}
+
+/** How the room stands behind the newest act: a PositionBoard as JSON, just as the API has it. */
+export interface PositionsFact {
+  board: Board;
 }
 
 export interface BatchOfFacts {
