@@ -38,7 +38,7 @@ async function peopleOf(server, roles) {
   return people;
 }
 
-test('two people take positions: a command leaves after the go of the poll alone, a no go ends it, and command is handed over', async (t) => {
+test('a command leaves after the go of the poll alone, a no go ends it, and command is handed over', async (t) => {
   const { folder, remove } = await temporaryFolder();
   t.after(remove);
   const more = ['--scenario', 'nominal', '--accounts', path.join(folder, 'accounts.json')];

@@ -554,8 +554,8 @@ TEST_CASE("each question in SQL of docs/archive.md is answered on a landing that
             REQUIRE(statement.ok());
             const auto row = statement->step();
             REQUIRE(row.ok());
-            // Nobody wrote a note or acted on a procedure or a position, nothing waited for a person, and every live unit is as it
-            // was recorded.
+            // Nobody wrote a note, acted on a procedure or took a position, nothing waited for a person, and every live
+            // unit is as it was recorded.
             const bool of_people = question.find("shift_log") != std::string::npos ||
                                    question.find("procedure_log") != std::string::npos ||
                                    question.find("position_log") != std::string::npos ||
