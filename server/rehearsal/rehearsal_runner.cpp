@@ -206,6 +206,7 @@ void RehearsalRunner::run() {
     }
     for (const auto& order : late)
         if (const auto* commands = std::get_if<SendCommands>(&order)) commands->refuse(over_reason);
+    if (finished_) tell(rehearsal, Clock::now(), true);  // only now: who hears of the end may begin another rehearsal
 }
 
 Result<void> RehearsalRunner::begin(Rehearsal& rehearsal) {
@@ -411,7 +412,6 @@ void RehearsalRunner::finish(Rehearsal& rehearsal) {
     for (const auto& refusal : rehearsal.script_refusals())
         spdlog::warn("run {}: scripted command refused: {}", run_id_.value, refusal);
     spdlog::info("run {} ends: {} {}", run_id_.value, name_of(outcome(rehearsal)), reason);
-    tell(rehearsal, Clock::now(), true);
 }
 
 std::vector<v1::CommandReply> RehearsalRunner::look_at(Rehearsal& rehearsal, const SendCommands& order) {

@@ -89,6 +89,9 @@ export const intentKey = computed(() => JSON.stringify([store.value?.id, pastRan
 const preview = signal<{ of: string; reply: CommandReply } | undefined>(undefined);
 export const previewNow = computed(() => (preview.value?.of === intentKey.value ? preview.value.reply : undefined));
 
+/** What stood in the line when Enter was pressed while another command was being sent. */
+let meantWhileSending = '';
+
 let asked: { of: string; answer: Promise<CommandReply | undefined> } | undefined;
 
 /**
@@ -209,6 +212,7 @@ export async function forward(): Promise<void> {
     else choose(offer.name);
     return;
   }
+  if (step.value === 'sending') meantWhileSending = line.value;
   if (!command || step.value === 'sending') return;
   const wanted = intent.value;
   if (!wanted || 'problem' in wanted) {
@@ -236,6 +240,8 @@ export async function forward(): Promise<void> {
     if (purpose.value === asked) purpose.value = undefined;
   };
   step.value = 'sending';
+  meantWhileSending = '';
+  let accepted = false;
   message.value = { good: undefined, text: `${command.name}: sending` };
   try {
     const reply = await sendCommand({ ...wanted, armed: wasArmed, confirmation: wasArmed ? command.name : '' });
@@ -245,7 +251,8 @@ export async function forward(): Promise<void> {
           text: `${command.name} is #${reply.command}, ${reply.octets.length / 2} octets${uplink.value.hold ? ', held' : uplink.value.releaseAt ? ', waits for its time' : ''}${reply.reason && `; ${reply.reason}`}`,
         }
       : { good: false, text: `${command.name} refused: ${reply.reason}; nothing was sent` };
-    if (reply.accepted) {
+    accepted = reply.accepted;
+    if (accepted) {
       done();
       asked?.sent(Number(reply.command));
     } else learnRights();
@@ -256,6 +263,11 @@ export async function forward(): Promise<void> {
   step.value = 'type';
   chosenName.value = undefined;
   confirmation.value = '';
+  if (line.value !== '' && line.value !== sent) {
+    // The next command is being typed: nothing of it is selected. If Enter has ended it, its review opens.
+    if (accepted && line.value === meantWhileSending) await forward();
+    return;
+  }
   if (document.activeElement === document.body || document.activeElement?.closest('[data-testid="panel-commands"]'))
     openCommandLine(); // a user who works elsewhere keeps the focus there
 }

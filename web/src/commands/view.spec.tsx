@@ -333,6 +333,36 @@ describe('an answer', () => {
     await answered(forward());
     expect(heard.map((each) => each.intent.dryRun === true)).toEqual([true, false]);
   });
+  it('takes nothing of what is typed meanwhile, and Enter upon it opens the review of the next command', async () => {
+    await reviewed();
+    const sent = forward();
+    type('no op');
+    await forward();
+    type('no o');
+    await answered(sent);
+    expect([line.value, step.value]).toEqual(['no o', 'type']); // typed further since: Enter was not for this
+    back();
+    await reviewed();
+    const again = forward();
+    type('no op ');
+    await forward();
+    await answered(again);
+    expect([line.value, step.value, heard.at(-1)?.intent.dryRun]).toEqual(['no op ', 'review', undefined]);
+  });
+  it('that refuses stays in sight, whatever was typed meanwhile', async () => {
+    await reviewed();
+    const sent = forward();
+    type('no op ');
+    await forward();
+    await Promise.resolve();
+    reply({ accepted: false, reason: 'the room is closed' });
+    await sent;
+    expect([line.value, step.value, message.value?.text]).toEqual([
+      'no op ',
+      'type',
+      expect.stringContaining('the room is closed'),
+    ]);
+  });
   it('that never comes leaves nothing in the line that another Enter would send again', async () => {
     await reviewed();
     const sent = forward();
