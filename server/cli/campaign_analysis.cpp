@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/campaign/campaign_order.hpp"
 #include "server/campaign/campaign_report.hpp"
+#include "server/campaign/case_hdf5.hpp"
 #include "server/campaign/sensitivity.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/long_work.hpp"
@@ -32,14 +33,28 @@ Result<campaign::CaseTable> table_of(const std::filesystem::path& file) {
     return table;
 }
 
-int export_cases(const std::filesystem::path& file, const std::filesystem::path& out) {
-    if (const auto possible = can_be_made(out); !possible) return failed("campaign: " + possible.error().message);
+int export_cases(const std::filesystem::path& file, const std::filesystem::path& csv,
+                 const std::filesystem::path& hdf5) {
+    const auto said = [](const Error& error) { return failed("campaign: " + error.message); };
+    for (const auto& out : {csv, hdf5})
+        if (!out.empty())
+            if (const auto possible = can_be_made(out); !possible) return said(possible.error());
+    const auto header = campaign::results_header(file);
+    if (!header) return said(header.error());
     const auto table = table_of(file);
-    if (!table) return failed("campaign: " + table.error().message);
-    if (const auto made = make_file(out, campaign::csv_of(*table)); !made)
-        return failed("campaign: " + made.error().message);
-    fmt::print("{} cases, {} quantities of each are in {}\n", table->numbers.size(), table->columns.size(),
-               out.string());
+    if (!table) return said(table.error());
+    const auto make = [&](const std::filesystem::path& out, const std::string& octets) -> Result<void> {
+        if (const auto made = make_file(out, octets); !made) return made;
+        fmt::print("{} cases, {} quantities of each are in {}\n", table->numbers.size(), table->columns.size(),
+                   out.string());
+        return {};
+    };
+    if (!csv.empty())
+        if (const auto made = make(csv, campaign::csv_of(*table)); !made) return said(made.error());
+    if (hdf5.empty()) return 0;
+    const auto octets = campaign::hdf5_of(*table, {header->scenario, header->seed});
+    if (!octets) return said(octets.error());
+    if (const auto made = make(hdf5, *octets); !made) return said(made.error());
     return 0;
 }
 
@@ -264,15 +279,19 @@ void add_campaign_analysis(CLI::App& campaign_app, int& exit_code) {
     }
     {
         struct Export {
-            std::filesystem::path file, out;
+            std::filesystem::path file, csv, hdf5;
         };
         const auto options = std::make_shared<Export>();
         auto& command = *campaign_app.add_subcommand(
             "export",
             "writes a row a case: figures, errors drawn, each event's time, height, speed and place, margins");
         file_of(command, options->file);
-        command.add_option("--csv", options->out, "the new file")->required();
-        command.callback([options, &exit_code] { exit_code = export_cases(options->file, options->out); });
+        auto& forms = *command.add_option_group("file", "one of them, or both");
+        forms.add_option("--csv", options->csv, "the new file, as CSV");
+        forms.add_option("--hdf5", options->hdf5, "the new file, as HDF5: a dataset a quantity");
+        forms.require_option(1, 2);
+        command.callback(
+            [options, &exit_code] { exit_code = export_cases(options->file, options->csv, options->hdf5); });
     }
 }
 

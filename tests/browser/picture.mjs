@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares pictures of panels with stored ones, both as averages of tiles, so that the edge of a letter does not count
 // but a moved panel or lost colours do. A trace is one pixel thin and would vanish in a tile, so the columns of pixels
-// with a trace's colour are counted for each canvas. AEOLIS_RENEW_PICTURES=1 stores new pictures, and whole ones in
-// build/test/pictures: look at those before you commit.
+// with a trace's colour are counted for each canvas. A picture that differs is kept whole in build/test/pictures.
+// AEOLIS_RENEW_PICTURES=1 stores new pictures, and whole ones there: look at those before you commit.
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { root } from './support.mjs';
@@ -38,13 +38,19 @@ function differentTraces(name, now, stored) {
   );
 }
 
+function keepWhole(name, screenshot) {
+  const whole = path.join(wholeFolder, `${name}.png`);
+  mkdirSync(path.dirname(whole), { recursive: true });
+  writeFileSync(whole, screenshot);
+}
+
 /** Compares with the stored picture; undefined, or a line that states the difference. */
 export async function comparePicture(page, name, screenshot, { tile_px, differs: limit } = FINE) {
   const file = path.join(folder, `${name}.png`);
   const traces = await page.evaluate(columnsOfTraces, TRACES);
   if (process.env.AEOLIS_RENEW_PICTURES) {
-    for (const each of [folder, wholeFolder]) mkdirSync(path.dirname(path.join(each, name)), { recursive: true });
-    writeFileSync(path.join(wholeFolder, `${name}.png`), screenshot);
+    mkdirSync(path.dirname(file), { recursive: true });
+    keepWhole(name, screenshot);
     writeFileSync(
       file,
       Buffer.from((await page.evaluate(inPage, { png: screenshot.toString('base64'), tile: tile_px })).png, 'base64'),
@@ -76,18 +82,36 @@ export async function comparePicture(page, name, screenshot, { tile_px, differs:
 }
 
 const SETTLES_MS = 60_000; // only a difference waits this long
-const RENEWED_AFTER_MS = 1500; // longer than history and a draw after it take, since there is nothing to compare with
+// A picture that is stored has nothing to be compared with: it is taken once nothing has moved for so long.
+const STILL_MS = 4000;
+const MOVES_MS = 40_000; // what still moves then moves by itself
+
+async function stands(what) {
+  const end = Date.now() + MOVES_MS;
+  let [last, since] = [undefined, Date.now()];
+  while (Date.now() < end && Date.now() - since < STILL_MS) {
+    const now = await what.screenshot({ animations: 'disabled' });
+    if (last === undefined || !now.equals(last)) since = Date.now();
+    last = now;
+    await new Promise((resolve) => setTimeout(resolve, 250));
+  }
+}
 
 /**
  * Waits until `what` matches the stored picture; undefined, or the remaining difference. On a busy machine the page's
  * successive requests take seconds.
  */
 export async function comesToLook(page, name, what, fineness = FINE) {
-  if (process.env.AEOLIS_RENEW_PICTURES) await page.waitForTimeout(RENEWED_AFTER_MS);
+  if (process.env.AEOLIS_RENEW_PICTURES) await stands(what);
   const end = Date.now() + SETTLES_MS;
   for (;;) {
-    const found = await comparePicture(page, name, await what.screenshot({ animations: 'disabled' }), fineness);
-    if (found.length === 0 || Date.now() > end) return found;
+    const screenshot = await what.screenshot({ animations: 'disabled' });
+    const found = await comparePicture(page, name, screenshot, fineness);
+    if (found.length === 0) return found;
+    if (Date.now() > end) {
+      keepWhole(name, screenshot);
+      return found;
+    }
     await page.waitForTimeout(250);
   }
 }

@@ -447,9 +447,12 @@ TEST_CASE("a campaign is studied by the program: verdict, table of all numbers, 
         CHECK(number_at(json, {"limits", "within_limits"}) <= 12.0);
         CHECK(json.fields().at("limits").struct_value().fields().at("limits").list_value().values_size() >= 5);
     }
-    const auto table = ran({"export", in("1") + ".db", "--csv", in("cases.csv")});
+    const auto table = ran({"export", in("1") + ".db", "--csv", in("cases.csv"), "--hdf5", in("cases.h5")});
     INFO(table.out);
     CHECK(table.code == 0);
+    std::string signature(8, ' ');
+    std::ifstream{folder / "cases.h5"}.read(signature.data(), 8);
+    CHECK(signature == "\x89HDF\r\n\x1a\n");
     std::ifstream csv{folder / "cases.csv"};
     std::string heading, row;
     int rows = 0;
@@ -484,6 +487,8 @@ TEST_CASE("a campaign is studied by the program: verdict, table of all numbers, 
     // One line each.
     const std::vector<std::pair<std::vector<std::string>, const char*>> refused{
         {{"export", in("1") + ".db", "--csv", in("cases.csv")}, "cases.csv is there already"},
+        {{"export", in("1") + ".db", "--hdf5", in("cases.h5")}, "cases.h5 is there already"},
+        {{"export", in("1") + ".db"}, "--csv"},
         {{"export", in("none.db"), "--csv", in("new.csv")}, "none.db: "},
         {{"compare", in("1") + ".db", in("cases.csv")}, "cases.csv: "},
         {{"correlate", in("1") + ".db", "--figure", "luck"}, "has no quantity 'luck'"},

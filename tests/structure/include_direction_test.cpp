@@ -104,6 +104,7 @@ const std::vector<Home>& homes() {
         {"nats/", {"server/cluster/engine.cpp"}, "NATS is at home in server/cluster/engine.cpp"},
         {"muParser", {"server/archive/expression.cpp"}, "muParser is at home in server/archive/expression.cpp"},
         {"yaml", {"server/procedures/yaml_document.cpp"}, "libyaml is at home in server/procedures/yaml_document.cpp"},
+        {"hdf5", {"server/campaign/case_hdf5.cpp", "tests/"}, "HDF5 is at home in server/campaign/case_hdf5.cpp"},
         {"sodium", {"server/access/secrets.cpp"}, "libsodium is at home in server/access/secrets.cpp"},
         {"boost/", with_effects, "Boost is at home in server/"},
         {"openssl/",
