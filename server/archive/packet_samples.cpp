@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
 
 namespace aeolis::archive {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 // ?1 run, ?2 APID, ?3 source, ?4 packet, ?5 … ?6 SCLK; octets, sclk, ert_us, key of sampled packets.
 constexpr char newest_by_time_sql[] =
     "SELECT octets, sclk, ert_us, key FROM packets WHERE run = ?1 AND apid = ?2 AND source = ?3 AND packet = ?4"
-    " AND sclk BETWEEN ?5 AND ?6 AND sampled = 1 ORDER BY sclk DESC LIMIT 1";
+    " AND sclk BETWEEN ?5 AND ?6 AND sampled = 1 ORDER BY sclk DESC, key DESC LIMIT 1";
 // By reception, among the keys ?7 … ?8: through all of these rows, or (the plus) through those of the APID by the time
 // index. The first suits fast packets, the second slow ones.
 constexpr char newest_by_key_sql[] =
@@ -112,6 +113,13 @@ ChannelValue sample_of(Reader::State& reader, const sqlite::Statement& row, Sour
     return value;
 }
 
+/// In our mission by the clock, and at one instant of one source by reception; in another mission by reception.
+bool is_newer(const ChannelValue& value, const ChannelValue& known, bool by_reception) {
+    if (by_reception) return known.seq < value.seq;
+    if (known.sclk == value.sclk) return known.source == value.source && known.seq < value.seq;
+    return known.sclk < value.sclk;
+}
+
 }  // namespace
 
 Result<void> note_newest(Reader::State& reader, const RunInfo& run, std::size_t packet, Source source, double to_s,
@@ -126,8 +134,7 @@ Result<void> note_newest(Reader::State& reader, const RunInfo& run, std::size_t 
     for (std::size_t i = 0; i < channels.size(); ++i) {
         auto& known = newest[channels[i].value];
         auto value = sample_of(reader, ***found, source, channels[i], i);
-        const bool newer = !known || (reader.other != nullptr ? known->seq < value.seq : known->sclk < value.sclk);
-        if (newer) known = std::move(value);
+        if (!known || is_newer(value, *known, reader.other != nullptr)) known = std::move(value);
     }
     return {};
 }
@@ -154,8 +161,25 @@ Result<std::vector<ChannelValue>> text_samples(Reader::State& reader, const RunI
             }
         }
     }
-    std::ranges::stable_sort(samples, {}, [](const ChannelValue& sample) { return sample.sclk.seconds; });
+    std::ranges::sort(samples, {}, [](const ChannelValue& sample) {
+        return std::tuple{sample.sclk.seconds, sample.source, sample.seq};
+    });
     return samples;
+}
+
+Result<std::vector<Sequence>> sequences_of_samples(Reader::State& reader, RunId run, std::size_t packet, Source source,
+                                                   const ClosedRange& range) {
+    const PacketsOf of{run, packet, reader.dictionary.packets[packet].apid, source};
+    auto rows = reader.query(of.unrestricted_apid() ? in_range_of_unrestricted_apid_sql : in_range_sql);
+    if (!rows) return rows.error();
+    of.bind(**rows, range);
+    std::vector<Sequence> sequences;
+    for (;;) {
+        auto found = (*rows)->step();
+        if (!found) return found.error();
+        if (!*found) return sequences;
+        sequences.push_back(sequence_of((*rows)->integer(3)));
+    }
 }
 
 }  // namespace aeolis::archive

@@ -24,4 +24,9 @@ Result<void> note_newest(Reader::State& reader, const RunInfo& run, std::size_t 
 Result<std::vector<ChannelValue>> text_samples(Reader::State& reader, const RunInfo& run, ChannelId channel,
                                                const ClosedRange& range, std::optional<Source> only = std::nullopt);
 
+/// The numbers of the packets of a type that gave samples in a range, in order of SCLK, at one instant of reception.
+/// Call within a read transaction.
+Result<std::vector<Sequence>> sequences_of_samples(Reader::State& reader, RunId run, std::size_t packet, Source source,
+                                                   const ClosedRange& range);
+
 }  // namespace aeolis::archive

@@ -276,7 +276,8 @@ class Thinning {
         if (!least_) return;
         const bool least_first = least_->sclk_s <= largest_->sclk_s;
         all_.push_back(least_first ? *least_ : *largest_);
-        if (least_->sclk_s != largest_->sclk_s) all_.push_back(least_first ? *largest_ : *least_);
+        const bool one = least_->sclk_s == largest_->sclk_s && least_->value == largest_->value;
+        if (!one) all_.push_back(least_first ? *largest_ : *least_);
         least_.reset();
         largest_.reset();
     }

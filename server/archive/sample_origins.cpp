@@ -17,10 +17,10 @@ namespace {
 // Uses the index on time; another mission's containers may have any APID.
 constexpr char of_packet_sql[] =
     " FROM packets u WHERE u.run = ?1 AND u.apid = ?2 AND u.source = ?3 AND u.sclk BETWEEN ?4 AND ?5"
-    " AND u.packet = ?6 AND u.sampled = 1 ORDER BY u.sclk";
+    " AND u.packet = ?6 AND u.sampled = 1 ORDER BY u.sclk, u.key";
 constexpr char of_container_sql[] =
     " FROM packets u WHERE u.run = ?1 AND ?2 IS NOT NULL AND u.source = ?3 AND u.sclk BETWEEN ?4 AND ?5"
-    " AND u.packet = ?6 AND u.sampled = 1 ORDER BY u.sclk";
+    " AND u.packet = ?6 AND u.sampled = 1 ORDER BY u.sclk, u.key";
 const std::string presence_columns = std::string("SELECT u.sclk, u.link, u.octets, ") + path_comparison_sql;
 const std::string presences_of_packet_sql = presence_columns + of_packet_sql;
 const std::string presences_of_container_sql = presence_columns + of_container_sql;

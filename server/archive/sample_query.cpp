@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/archive/sample_query.hpp"
 
+#include "server/archive/packet_samples.hpp"
 #include "server/archive/schema.hpp"
 
 #include <algorithm>
@@ -144,12 +145,43 @@ Result<void> read_tail(Reader::State& reader, const SealedSeries& series, std::s
 bool earlier(const Sample& a, const Sample& b) {
     return a.sclk_s < b.sclk_s;
 }
+bool same(const Sample& a, const Sample& b) {
+    return a.sclk_s == b.sclk_s && a.value == b.value;
+}
 
-/// Both sources as one series: each is nearly in order, and together they interleave.
+/// The samples of one packet type among those of a source, in order of SCLK and reception.
+struct Stretch {
+    const SealedSeries* series;
+    std::size_t begin;
+};
+
+/// Orders the samples that several packet types have of a channel: at one instant by reception.
+Result<void> interleave(Reader::State& reader, const SampleSources& sources, std::span<const Stretch> stretches,
+                        std::vector<Sample>& samples) {
+    struct Received {
+        Sequence seq;
+        Sample sample;
+    };
+    std::vector<Received> all;
+    all.reserve(samples.size());
+    for (std::size_t i = 0; i < stretches.size(); ++i) {
+        const auto& [series, begin] = stretches[i];
+        const std::size_t end = i + 1 < stretches.size() ? stretches[i + 1].begin : samples.size();
+        const auto sequences = sequences_of_samples(reader, series->run, series->packet, series->source, sources.range);
+        if (!sequences) return sequences.error();
+        if (sequences->size() != end - begin)
+            return damaged(reader, "channel " + std::to_string(sources.channel.value),
+                           "it has " + std::to_string(end - begin) + " samples of " +
+                               std::to_string(sequences->size()) + " packets");
+        for (std::size_t at = begin; at < end; ++at) all.push_back({(*sequences)[at - begin], samples[at]});
+    }
+    std::ranges::sort(all, {}, [](const Received& one) { return std::pair{one.sample.sclk_s, one.seq}; });
+    std::ranges::transform(all, samples.begin(), &Received::sample);
+    return {};
+}
+
+/// Both sources as one series.
 std::span<const Sample> merged(Reader::State& reader) {
-    for (auto* samples : {&reader.realtime, &reader.recorded})
-        if (!std::is_sorted(samples->begin(), samples->end(), earlier))
-            std::sort(samples->begin(), samples->end(), earlier);
     if (reader.realtime.empty()) return reader.recorded;
     if (reader.recorded.empty()) return reader.realtime;
     reader.both.resize(reader.realtime.size() + reader.recorded.size());
@@ -182,8 +214,7 @@ class Intervals {
             if (!interval.filled) continue;
             const bool falls = earlier(interval.largest, interval.least);
             points.push_back(falls ? interval.largest : interval.least);
-            if (interval.least.sclk_s != interval.largest.sclk_s)
-                points.push_back(falls ? interval.least : interval.largest);
+            if (!same(interval.least, interval.largest)) points.push_back(falls ? interval.least : interval.largest);
         }
         return points;
     }
@@ -209,7 +240,7 @@ unsigned level_for(std::size_t samples, std::size_t intervals) {
 
 Result<SampleSources> find_sample_sources(Reader::State& reader, const RunInfo& run, ChannelId channel,
                                           const ClosedRange& range, std::optional<Source> only) {
-    SampleSources sources{channel, range, {}, {}, 0};
+    SampleSources sources{channel, range, {}, 0};
     for (const auto place : reader.columns.places(channel)) {
         for (const Source source : {Source::realtime, Source::recorded}) {
             if (only && *only != source) continue;
@@ -220,35 +251,45 @@ Result<SampleSources> find_sample_sources(Reader::State& reader, const RunInfo& 
             for (const NodeRange& each : *found)
                 sources.samples_at_most +=
                     static_cast<std::size_t>((each.last - each.first) * pyramid::samples_of_node(each.level));
-            if (!found->empty()) sources.parts.push_back({*series, std::move(found).value()});
-            if (run.finished) continue;
-            auto done = read_tail(reader, *series, place.column, range,
-                                  [&](const Sample& sample) { sources.tail.push_back(sample); });
-            if (!done) return done.error();
+            SampleSources::Part part{*series, std::move(found).value(), {}};
+            if (!run.finished) {
+                auto done = read_tail(reader, *series, place.column, range,
+                                      [&](const Sample& sample) { part.tail.push_back(sample); });
+                if (!done) return done.error();
+            }
+            sources.samples_at_most += part.tail.size();
+            if (!part.node_ranges.empty() || !part.tail.empty()) sources.parts.push_back(std::move(part));
         }
     }
-    sources.samples_at_most += sources.tail.size();
     return sources;
 }
 
 Result<std::span<const Sample>> exact_samples(Reader::State& reader, const SampleSources& sources) {
     reader.realtime.clear();
     reader.recorded.clear();
-    const auto of = [&](Source source) -> std::vector<Sample>& {
-        return source == Source::realtime ? reader.realtime : reader.recorded;
-    };
-    for (const auto& [series, parts] : sources.parts) {
+    std::vector<Stretch> of_realtime, of_recorded;
+    for (const auto& [series, parts, tail] : sources.parts) {
+        const bool realtime = series.source == Source::realtime;
+        auto& into = realtime ? reader.realtime : reader.recorded;
+        const std::size_t begin = into.size();
         for (std::size_t i = 0; i < parts.size();) {
             // Reads adjacent ranges of any level together, so that no segment is unpacked twice.
             const std::uint64_t first = parts[i].first * pyramid::samples_of_node(parts[i].level);
             std::uint64_t last = first;
             for (; i < parts.size() && parts[i].first * pyramid::samples_of_node(parts[i].level) == last; ++i)
                 last = parts[i].last * pyramid::samples_of_node(parts[i].level);
-            if (auto done = read_samples(reader, series, sources, first, last, of(series.source)); !done)
-                return done.error();
+            if (auto done = read_samples(reader, series, sources, first, last, into); !done) return done.error();
         }
+        into.insert(into.end(), tail.begin(), tail.end());
+        if (into.size() == begin) continue;
+        (realtime ? of_realtime : of_recorded).push_back({&series, begin});
+        const auto new_ones = into.begin() + static_cast<std::ptrdiff_t>(begin);  // nearly in order
+        if (!std::is_sorted(new_ones, into.end(), earlier)) std::stable_sort(new_ones, into.end(), earlier);
     }
-    for (const Sample& sample : sources.tail) of(sample.source).push_back(sample);
+    if (of_realtime.size() > 1)
+        if (auto done = interleave(reader, sources, of_realtime, reader.realtime); !done) return done.error();
+    if (of_recorded.size() > 1)
+        if (auto done = interleave(reader, sources, of_recorded, reader.recorded); !done) return done.error();
     return merged(reader);
 }
 
@@ -257,13 +298,11 @@ Result<Thinned> thinned_samples(Reader::State& reader, const SampleSources& sour
     const unsigned wanted = level_for(sources.samples_at_most, count);
     Thinned thinned;
     std::vector<Sample> found;
-    found.reserve(sources.tail.size() + 2 * sources.samples_at_most / pyramid::samples_of_node(wanted) +
-                  segment_samples);
+    found.reserve(2 * sources.samples_at_most / pyramid::samples_of_node(wanted) + segment_samples);
     const auto undefined = [](const Sample& sample) { return std::isnan(sample.value); };
-    found.assign(sources.tail.begin(), sources.tail.end());
-    std::erase_if(found, undefined);
+    for (const auto& part : sources.parts) std::ranges::remove_copy_if(part.tail, std::back_inserter(found), undefined);
     thinned.samples = found.size();
-    for (const auto& [series, parts] : sources.parts) {
+    for (const auto& [series, parts, tail] : sources.parts) {
         for (const NodeRange& each : parts) {
             const unsigned level = std::min(wanted, each.level);
             const std::uint64_t share = pyramid::samples_of_node(each.level) / pyramid::samples_of_node(level);

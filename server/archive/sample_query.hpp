@@ -14,11 +14,11 @@ struct SampleSources {
     struct Part {
         SealedSeries series;
         std::vector<NodeRange> node_ranges;
+        std::vector<Sample> tail;  ///< in no segment yet: decommutated again from the packets
     };
     ChannelId channel;
     ClosedRange range;
     std::vector<Part> parts;
-    std::vector<Sample> tail;         ///< in no segment yet: decommutated again from the packets
     std::size_t samples_at_most = 0;  ///< upper bound: nodes and segments that touch the range count whole
 };
 /// Finds the data of a channel in a range: mostly in sealed segments; later samples are decommutated again from the
@@ -29,6 +29,7 @@ Result<SampleSources> find_sample_sources(Reader::State& reader, const RunInfo& 
                                           const ClosedRange& range, std::optional<Source> only = std::nullopt);
 
 /// The samples of one channel in a range, undefined ones (NaN) too, in order of SCLK, live and recorded as one series.
+/// Those of one instant are in the order of reception, live ones first, whichever packets have them.
 /// They are valid until the next call, because they are in a buffer that the reader reuses.
 Result<std::span<const Sample>> exact_samples(Reader::State& reader, const SampleSources& sources);
 

@@ -81,6 +81,56 @@ TEST_CASE("a series is exact, undefined samples too, whether sealed or still ope
     }
 }
 
+TEST_CASE("samples of one instant keep the order of reception, in one packet and in several, sealed and open",
+          "[reader][R54]") {
+    const bool finished = GENERATE(false, true);
+    CAPTURE(finished);
+    auto dictionary = small_dictionary();
+    dictionary::Packet echo{"Echo", "", Apid{0x21}, {}, tm_overhead_octets + 4, {}, 64.0, {}};
+    echo.fields = {{"altitude_m", dictionary.channels[0].type, altitude, tm_data_offset_octets * 8, {}}};
+    dictionary.packets.push_back(echo);
+    dictionary.model = tests::packet_model_of(dictionary);
+    const TemporaryFolder folder;
+    auto archive = std::move(Archive::open(folder / "a.db")).value();
+    pipeline::Pipeline pipeline(archive, dictionary);
+    REQUIRE(pipeline.begin({}).ok());
+    // A clock of whole seconds that is set back once: ten packets a second, of two types in turn.
+    const std::vector<double> seconds{1000.0, 1001.0, 1002.0, 900.0, 901.0, 1001.0};
+    std::vector<std::pair<double, double>> received;
+    for (std::size_t i = 0; i < 10 * seconds.size(); ++i) {
+        const auto number = static_cast<std::uint16_t>(i);
+        const double sclk_s = seconds[i / 10];
+        received.emplace_back(sclk_s, static_cast<double>(i));
+        auto octets = navigation_packet(number, sclk_s, static_cast<float>(i), 3.0F);
+        if (i % 2 == 1) {
+            octets.assign(tm_overhead_octets + 4, 0);
+            BitWriter{std::span<std::uint8_t>(octets).subspan(tm_data_offset_octets)}.put_float(static_cast<float>(i));
+            seal_tm_packet(octets, Apid{0x21}, number, Sclk{sclk_s}, dictionary_id);
+        }
+        REQUIRE(pipeline.accept(live(octets)).ok());
+    }
+    REQUIRE((finished ? pipeline.finish({archive::Outcome::touchdown, "", "", ""}) : pipeline.commit()).ok());
+    std::ranges::stable_sort(received, {}, &std::pair<double, double>::first);
+    auto reader = std::move(Reader::open(folder / "a.db", dictionary)).value();
+
+    const auto list = reader.series(RunId{1}, {{"altitude_m"}, {}, {}});
+    REQUIRE(list);
+    std::vector<std::pair<double, double>> given;
+    for (int i = 0; i < list->channels(0).value_size(); ++i)
+        given.emplace_back(list->channels(0).sclk(i), list->channels(0).value(i));
+    CHECK(given == received);
+    const auto latest = reader.latest(RunId{1}, Sclk{1001.5});
+    REQUIRE(latest);
+    CHECK(latest->front().value == 59.0);
+
+    // Thinned, an instant has its least and its largest value.
+    const auto few = reader.series(RunId{1}, {{"altitude_m"}, {{1002.0}, {}}, {2}});
+    REQUIRE(few);
+    REQUIRE(few->channels(0).value_size() == 2);
+    CHECK(few->channels(0).value(0) == 20.0);
+    CHECK(few->channels(0).value(1) == 29.0);
+}
+
 TEST_CASE("all samples of a run come in order of time, whole, whatever is asked for", "[reader][export]") {
     const bool finished = GENERATE(false, true);
     Recorded run(finished);
