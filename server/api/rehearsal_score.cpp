@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <iterator>
 #include <map>
 
 namespace aeolis::server {
@@ -48,7 +49,7 @@ class Judge {
   public:
     Judge(const ScoreFacts& facts, const dictionary::Dictionary& dictionary, const instruction::Rubric& rubric)
         : facts_(facts), dictionary_(dictionary), rubric_(rubric),
-          acts_(acts_of(facts.report, facts.alarms, facts.heard, facts.end, dictionary)) {}
+          acts_(acts_of(facts.report, facts.alarms, facts.room, facts.heard, facts.end, dictionary)) {}
 
     v1::Score score() {
         auto team = judge_team(team_case());
@@ -61,6 +62,8 @@ class Judge {
         add_data();
         add_alarms();
         for (auto& fault : team.faults) *score_.add_facts() = std::move(fault);
+        for (auto& fault : team.injected) *score_.add_faults() = std::move(fault);
+        for (const auto& act : acts_.acts) *score_.add_acts() = act.told();
         add_commands();
         add_team(std::move(team));
         double points = 0.0;
@@ -220,6 +223,21 @@ Result<void> add_alarm_items(archive::Reader& reader, archive::RunId run, ScoreF
     }
 }
 
+/// What people did with procedures and positions.
+Result<void> add_room(archive::Reader& reader, archive::RunId run, ScoreFacts& facts) {
+    const auto begun = reader.procedures(run);
+    if (!begun) return begun.error();
+    for (const auto& item : *begun) {
+        auto acts = reader.procedure_acts(run, item.procedure().number());
+        if (!acts) return acts.error();
+        std::ranges::move(*acts, std::back_inserter(facts.room));
+    }
+    auto acts = reader.position_acts(run);
+    if (!acts) return acts.error();
+    std::ranges::move(*acts, std::back_inserter(facts.room));
+    return {};
+}
+
 /// What was received of the vehicle's own reports: events but for diagnostic ones, and tones.
 Result<void> add_heard(archive::Reader& reader, archive::RunId run, ScoreFacts& facts) {
     archive::EventQuery events;
@@ -314,6 +332,7 @@ Result<ScoreFacts> score_facts(archive::Reader& reader, v1::AsFlownReport report
     auto interventions = all_interventions(reader, run);
     if (!interventions) return interventions.error();
     facts.interventions = std::move(*interventions);
+    if (auto done = add_room(reader, run, facts); !done) return done.error();
     if (auto done = add_heard(reader, run, facts); !done) return done.error();
     if (auto done = add_plan(reader, run, dictionary, facts); !done) return done.error();
     if (auto done = add_landed(reader, run, dictionary, facts); !done) return done.error();

@@ -22,6 +22,7 @@ struct ScoreFacts {
     v1::AsFlownReport report;  ///< with all commands and notes
     std::optional<Landed> landed;
     std::vector<v1::Item> alarms;  ///< changes of alarms and actions on them, in their order
+    std::vector<v1::Item> room;    ///< acts on procedures and positions
     std::vector<v1::Item> heard;   ///< event reports and tones as received, recorded ones too
     std::optional<Ert> end;        ///< of the run: what people did from then on does not count
     std::vector<v1::Intervention> interventions;

@@ -519,11 +519,13 @@ HttpResponse touchdown_report(const AnswerContext& context, archive::Reader& rea
     return answer(touchdown(reader, run, context.dictionary, *at, context.now, *recorded));
 }
 
+/// The score tells what was injected, and so is hidden as that is.
 HttpResponse score(const AnswerContext& context, archive::Reader& reader, archive::RunId run, const QueryText&) {
     const auto state = reader.run(run);
     if (!state) return error_response(400, state.error());
     if (!has_score(*state))  // before the report is made, which takes long
         return error_response(400, fmt::format("run {} has no score: it is no rehearsal that has finished", run.value));
+    if (auto refusal = hidden(context, reader, run)) return std::move(*refusal);
     auto report = whole_report(reader, run);
     if (!report) return error_response(400, report.error());
     const auto rubric = context.plans.rubric();
@@ -655,7 +657,7 @@ const std::array questions{
     RunRoute{"staleness", {}, {}, staleness},
     RunRoute{"proof", {"format"}, report_formats, proof},
     RunRoute{"report", {"format"}, report_formats, report},
-    RunRoute{"score", {}, {}, score},
+    RunRoute{"score", {}, {}, score, true},
     RunRoute{"state", {"at"}, {}, state},
 };
 

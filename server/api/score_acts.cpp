@@ -4,6 +4,7 @@
 #include "server/archive/items.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <fmt/format.h>
 
@@ -29,17 +30,53 @@ std::string first_line(const std::string& text) {
     return end == std::string::npos ? text : text.substr(0, end) + " …";
 }
 
+std::string with_reason(std::string deed, const std::string& reason) {
+    return reason.empty() ? deed : deed + ": " + reason;
+}
+
+/// "ticked look of uhf_lost".
+std::string deed_of(const v1::ProcedureAct& act) {
+    const auto of = fmt::format("{} {}", act.procedure(), act.number());
+    const auto step = act.step().empty() ? of : fmt::format("{} of {}", act.step(), of);
+    switch (act.kind()) {
+    case v1::ProcedureAct::begin: return "began procedure " + of;
+    case v1::ProcedureAct::tick: return with_reason("ticked " + step, act.reason());
+    case v1::ProcedureAct::sign: return "signed " + step;
+    case v1::ProcedureAct::choose:
+        return with_reason(fmt::format("chose way {} at {}", act.choice() + 1, step), act.reason());
+    case v1::ProcedureAct::skip: return with_reason("skipped " + step, act.reason());
+    case v1::ProcedureAct::sent: return fmt::format("tied command {} to {}", act.command(), step);
+    case v1::ProcedureAct::hold: return with_reason("held " + of, act.reason());
+    case v1::ProcedureAct::release: return "released " + step;
+    case v1::ProcedureAct::acknowledge: return "saw watchdog " + step;
+    default: return with_reason("stopped " + of, act.reason());
+    }
+}
+
+/// "took gnc", "called a poll: do edl".
+std::string deed_of(const v1::PositionAct& act) {
+    switch (act.kind()) {
+    case v1::PositionAct::take: return with_reason("took " + act.position(), act.reason());
+    case v1::PositionAct::offer: return fmt::format("offered {} to {}", act.position(), act.to());
+    case v1::PositionAct::leave: return with_reason("left " + act.position(), act.reason());
+    case v1::PositionAct::poll: return "called a poll: " + act.subject();
+    case v1::PositionAct::go: return with_reason("said go as " + act.position(), act.reason());
+    default: return with_reason("said no go as " + act.position(), act.reason());
+    }
+}
+
 /// Reads the items of a run into ScoreActs.
 class ActReader {
   public:
     ActReader(const v1::AsFlownReport& report, std::optional<Ert> end, const dictionary::Dictionary& dictionary)
         : report_(report), end_(end), dictionary_(dictionary) {}
 
-    ScoreActs read(const std::vector<v1::Item>& alarms, const std::vector<v1::Item>& heard) {
+    ScoreActs read(const std::vector<v1::Item>& alarms, const std::vector<v1::Item>& room,
+                   const std::vector<v1::Item>& heard) {
         for (const auto& item : alarms)
             if (!item.has_alarm_action() || in_time(item)) take_alarm(item);
         for (const auto& command : report_.commands()) read_.commands.push_back(outcome_of(command));
-        collect_acts(alarms);
+        collect_acts(alarms, room);
         collect_heard(heard);
         return std::move(read_);
     }
@@ -97,38 +134,46 @@ class ActReader {
         return outcome;
     }
 
-    void collect_acts(const std::vector<v1::Item>& alarms) {
+    void collect_acts(const std::vector<v1::Item>& alarms, const std::vector<v1::Item>& room) {
         using Kind = PersonsAct::Kind;
         auto& acts = read_.acts;
         for (const auto& item : alarms) {
             if (!item.has_alarm_action() || !in_time(item)) continue;
             const auto& action = item.alarm_action();
-            acts.push_back({Kind::alarm, e_s_of(item),
-                            fmt::format("{}: {} {}", or_someone(action.by()),
-                                        v1::AlarmAction::Action_Name(action.action()), action.alarm()),
+            acts.push_back({Kind::alarm, e_s_of(item), or_someone(action.by()),
+                            fmt::format("{} {}", v1::AlarmAction::Action_Name(action.action()), action.alarm()),
                             action.alarm()});
         }
         for (const auto& command : read_.commands)
             if (command.sender && command.e_s)
                 acts.push_back(
-                    {Kind::command, *command.e_s, fmt::format("{}: sent {}", *command.sender, command.name),
-                     command.name,
+                    {Kind::command, *command.e_s, *command.sender, "sent " + command.name, command.name,
                      command.how == CommandOutcome::How::failed || command.how == CommandOutcome::How::cancelled});
         for (const auto& item : report_.notes())
             if (in_time(item))
-                acts.push_back(
-                    {Kind::note, e_s_of(item),
-                     fmt::format("{} wrote “{}”", or_someone(item.note().by()), first_line(item.note().text())),
-                     item.note().text()});
+                acts.push_back({Kind::note, e_s_of(item), or_someone(item.note().by()),
+                                fmt::format("wrote “{}”", first_line(item.note().text())), item.note().text()});
+        for (const auto& item : room) {
+            if (!in_time(item)) continue;
+            if (item.has_procedure_act())
+                acts.push_back({Kind::procedure, e_s_of(item), or_someone(item.procedure_act().by()),
+                                deed_of(item.procedure_act()), ""});
+            else if (item.has_position_act())
+                acts.push_back({Kind::position, e_s_of(item), or_someone(item.position_act().by()),
+                                deed_of(item.position_act()), ""});
+        }
         std::ranges::stable_sort(acts, {}, &PersonsAct::e_s);
     }
 
     void collect_heard(const std::vector<v1::Item>& heard) {
         for (const auto& item : heard)
-            if (item.has_event() && item.event().source() == v1::SOURCE_REALTIME)
-                read_.heard[item.event().name()].push_back(e_s_of(item));
-            else if (item.has_tone() && item.tone().has_tone())
+            if (item.has_event()) {
+                const auto& event = item.event();
+                read_.on_board[event.name()].push_back(event.sclk() - report_.run().entry_sclk());
+                if (event.source() == v1::SOURCE_REALTIME) read_.heard[event.name()].push_back(e_s_of(item));
+            } else if (item.has_tone() && item.tone().has_tone()) {
                 read_.heard[item.tone().name()].push_back(e_s_of(item));
+            }
     }
 
     const v1::AsFlownReport& report_;
@@ -162,10 +207,24 @@ void RaisedAlarms::take_acknowledged(const v1::AlarmAction& action, double e_s) 
     raised.acknowledged = Acknowledged{e_s - raised.e_s, or_someone(action.by(), "unsigned")};
 }
 
+std::string PersonsAct::words() const {
+    return kind == Kind::note ? by + " " + deed : by + ": " + deed;
+}
+
+v1::ScoreAct PersonsAct::told() const {
+    static constexpr std::array kinds{"alarm", "command", "note", "procedure", "position"};
+    v1::ScoreAct told;
+    told.set_kind(kinds[static_cast<std::size_t>(kind)]);
+    told.set_e_s(e_s);
+    told.set_by(by);
+    told.set_text(deed);
+    return told;
+}
+
 ScoreActs acts_of(const v1::AsFlownReport& report, const std::vector<v1::Item>& alarms,
-                  const std::vector<v1::Item>& heard, std::optional<Ert> end,
+                  const std::vector<v1::Item>& room, const std::vector<v1::Item>& heard, std::optional<Ert> end,
                   const dictionary::Dictionary& dictionary) {
-    return ActReader{report, end, dictionary}.read(alarms, heard);
+    return ActReader{report, end, dictionary}.read(alarms, room, heard);
 }
 
 }  // namespace aeolis::server

@@ -3,6 +3,7 @@
 
 #include "aeolis/v1/items.pb.h"
 #include "aeolis/v1/run.pb.h"
+#include "aeolis/v1/score.pb.h"
 #include "common/time.hpp"
 #include "dictionaries/dictionary.hpp"
 
@@ -53,26 +54,33 @@ struct CommandOutcome {
 
 /// Something that a person did.
 struct PersonsAct {
-    enum class Kind : std::uint8_t { alarm, command, note };
+    enum class Kind : std::uint8_t { alarm, command, note, procedure, position };
     Kind kind = Kind::note;
     double e_s = 0.0;
-    std::string words;            ///< "Ann: sent NO_OP"
-    std::string about;            ///< the alarm's or the command's name, the note's text
+    std::string by;
+    std::string deed;             ///< "sent NO_OP"
+    std::string about;            ///< the alarm's or the command's name, the note's text; else empty
     bool without_effect = false;  ///< a command that failed or was cancelled
+
+    std::string words() const;  ///< "Ann: sent NO_OP"
+    v1::ScoreAct told() const;
 };
 
 struct ScoreActs {
     RaisedAlarms raised;
-    std::vector<CommandOutcome> commands;              ///< of people and of the script
-    std::vector<PersonsAct> acts;                      ///< by time
-    std::map<std::string, std::vector<double>> heard;  ///< events and tones that were received live, by name
+    std::vector<CommandOutcome> commands;                 ///< of people and of the script
+    std::vector<PersonsAct> acts;                         ///< by time
+    std::map<std::string, std::vector<double>> heard;     ///< events and tones that were received live, by name
+    std::map<std::string, std::vector<double>> on_board;  ///< events, when the vehicle reported them, live or recorded
 };
 
 /// @param alarms  changes of alarms and actions on them, in their order
-/// @param heard   event reports and tones; what only the recording brought does not count
+/// @param room    acts on procedures and on positions
+/// @param heard   event reports and tones; what only the recording brought does not count as heard
 /// @param end     of the run, on Earth: what people did from then on, while they looked back, does not count
 ScoreActs acts_of(const v1::AsFlownReport& report, const std::vector<v1::Item>& alarms,
-                  const std::vector<v1::Item>& heard, std::optional<Ert> end, const dictionary::Dictionary& dictionary);
+                  const std::vector<v1::Item>& room, const std::vector<v1::Item>& heard, std::optional<Ert> end,
+                  const dictionary::Dictionary& dictionary);
 
 /// "PYRO_CONTROLLER_SILENT" as "pyro controller silent".
 std::string in_words(std::string name);

@@ -91,7 +91,7 @@ class TeamJudge {
     TeamPoints judge() {
         collect_causes();
         for (const auto& intervention : judged_.interventions)
-            if (intervention.has_fault() && intervention.e_s() >= judged_.from_e_s) judge_fault(intervention);
+            if (intervention.has_fault()) judge_fault(intervention);
         judge_other_alarms();
         judge_calls();
         judge_failed_commands();
@@ -167,30 +167,75 @@ class TeamJudge {
         const double felt_s = intervention.e_s() - (on_earth ? judged_.light_time_s : 0.0);
         const double until_s = felt_s + duration_s(intervention.fault()) + signs_until_s;
         const auto sign = first_sign(handling, felt_s, until_s);
+        auto& injected = tell_fault(intervention, handling, felt_s, until_s, sign);
+        if (intervention.e_s() < judged_.from_e_s) {
+            injected.add_not_judged("all of it: it was done before the fork");
+            return;
+        }
         inject_ = intervention.inject();
         auto& fact = judged_points_.faults.emplace_back();
         fact.set_of("fault");
         fact.set_e_s(felt_s);
         fact.set_text(fmt::format("{}; {}", instruction::text_of(intervention.fault()), sign_words(sign, felt_s)));
         ++judging_;
+        if (handling.team.empty()) injected.add_not_judged("all of it: nothing is expected of a team about it");
         for (const auto& expectation : handling.team)
-            if (sign && sign->e_s + expectation.within_s <= judged_.until_e_s)  // else there was no time for it
-                judge_expectation(expectation, *sign, felt_s, until_s);
+            if (const auto why = judge_in_time(expectation, sign, felt_s, until_s); !why.empty())
+                injected.add_not_judged(fmt::format("{}: {}", text_of(expectation), why));
         judge_consequences(felt_s, until_s);
         inject_.clear();
+    }
+
+    /// Why an expectation is not judged; empty: it was.
+    std::string judge_in_time(const Expectation& expectation, const std::optional<Sign>& sign, double felt_s,
+                              double until_s) {
+        if (!sign) return "no sign of it was received";
+        if (sign->e_s + expectation.within_s > judged_.until_e_s) return "the run ended before";
+        if (expectation.act == Act::acknowledge)
+            return judge_acknowledgement(expectation, felt_s, until_s) ? "" : "no such alarm was raised by it";
+        judge_expectation(expectation, *sign);
+        return "";
+    }
+
+    v1::ScoreFault& tell_fault(const v1::Intervention& intervention, const Handling& handling, double felt_s,
+                               double until_s, const std::optional<Sign>& first) {
+        auto& told = judged_points_.injected.emplace_back();
+        told.set_text(instruction::text_of(intervention.fault()));
+        told.set_inject(intervention.inject());
+        told.set_e_s(intervention.e_s());
+        told.set_felt_e_s(felt_s);
+        const auto earliest = [&](const std::map<std::string, std::vector<double>>& of, const std::string& name) {
+            std::optional<double> found;
+            if (const auto times = of.find(name); times != of.end())
+                for (const double e_s : times->second)
+                    if (e_s >= felt_s - early_s && e_s <= until_s && (!found || e_s < *found)) found = e_s;
+            return found;
+        };
+        for (const auto& name : handling.signs) {
+            auto& sign = *told.add_signs();
+            sign.set_name(name);
+            if (const auto e_s = earliest(acts_.on_board, name)) sign.set_on_board_e_s(*e_s);
+            if (const auto heard = first_sign({{name}, {}}, felt_s, until_s)) sign.set_heard_e_s(heard->e_s);
+        }
+        if (!first) return told;
+        told.set_seen_e_s(first->e_s);
+        if (const auto act = first_act(first->e_s); act != acts_.acts.end()) *told.mutable_first_act() = act->told();
+        return told;
+    }
+
+    std::vector<PersonsAct>::const_iterator first_act(double from_s) const {
+        return std::ranges::find_if(acts_.acts, [&](const PersonsAct& act) { return act.e_s >= from_s - stamped_s; });
     }
 
     std::string sign_words(const std::optional<Sign>& sign, double felt_s) const {
         if (!sign) return "nothing that was received showed it";
         std::string words = sign->name.empty() ? "" : fmt::format("{}: {}; ", later(sign->e_s - felt_s), sign->name);
-        const auto first =
-            std::ranges::find_if(acts_.acts, [&](const PersonsAct& act) { return act.e_s >= sign->e_s - stamped_s; });
+        const auto first = first_act(sign->e_s);
         if (first == acts_.acts.end()) return words + "nobody did anything afterwards";
-        return words + fmt::format("first act {}: {}", later(first->e_s - sign->e_s), first->words);
+        return words + fmt::format("first act {}: {}", later(first->e_s - sign->e_s), first->words());
     }
 
-    void judge_expectation(const Expectation& expectation, const Sign& sign, double felt_s, double until_s) {
-        if (expectation.act == Act::acknowledge) return judge_acknowledgement(expectation, felt_s, until_s);
+    void judge_expectation(const Expectation& expectation, const Sign& sign) {
         if (expectation.act == Act::no_command) return judge_restraint(expectation, sign.e_s);
         std::size_t done = 0;
         for (; done < acts_.acts.size(); ++done) {
@@ -210,10 +255,11 @@ class TeamJudge {
         const double after_s = act.e_s - sign.e_s;
         add(expectation.of, text_of(expectation), sign.e_s,
             instruction::share_of(after_s, expectation.within_s, fades_by * expectation.within_s),
-            fmt::format("{}: {}", later(after_s), act.words));
+            fmt::format("{}: {}", later(after_s), act.words()));
     }
 
-    void judge_acknowledgement(const Expectation& expectation, double felt_s, double until_s) {
+    /// False: there was no such alarm.
+    bool judge_acknowledgement(const Expectation& expectation, double felt_s, double until_s) {
         for (std::size_t i = 0; i < acts_.raised.all.size(); ++i) {
             const auto& alarm = acts_.raised.all[i];
             if (!is_in(alarm.name, expectation.names) || alarm.e_s < felt_s - early_s || alarm.e_s > until_s) continue;
@@ -222,8 +268,9 @@ class TeamJudge {
             add(expectation.of, text_of(expectation), alarm.e_s,
                 instruction::share_of(after_s, expectation.within_s, fades_by * expectation.within_s),
                 acknowledgement_words(alarm));
-            return;
+            return true;
         }
+        return false;
     }
 
     static std::string acknowledgement_words(const RaisedAlarm& alarm) {
@@ -244,14 +291,14 @@ class TeamJudge {
         });
         if (sent != acts_.acts.end()) {
             add(expectation.of, text_of(expectation), from_s, 0.0,
-                fmt::format("{}: {}", later(sent->e_s - from_s), sent->words));
+                fmt::format("{}: {}", later(sent->e_s - from_s), sent->words()));
             return;
         }
         const auto present = std::ranges::find_if(
             acts_.acts, [&](const PersonsAct& act) { return within(act, from_s - judged_.rubric.present_s); });
         const bool anybody = present != acts_.acts.end();
         add(expectation.of, text_of(expectation), from_s, anybody ? 1.0 : 0.0,
-            anybody ? fmt::format("nothing was sent; somebody was there: {}", present->words)
+            anybody ? fmt::format("nothing was sent; somebody was there: {}", present->words())
                     : "nothing was sent, and nothing shows that anybody was there");
     }
 
@@ -294,7 +341,7 @@ class TeamJudge {
             const double heard_s = *std::ranges::min_element(heard->second);
             if (heard_s < judged_.from_e_s || heard_s + within_s > judged_.until_e_s) continue;
             ++judging_;
-            judge_expectation({Skill::communication, Act::note, words, within_s}, {heard_s, after}, 0.0, 0.0);
+            judge_expectation({Skill::communication, Act::note, words, within_s}, {heard_s, after});
             auto& point = judged_points_.points.back().point;
             point.set_expected(fmt::format("after {}: {}", in_words(after), point.expected()));
         }

@@ -29,8 +29,9 @@ struct TeamPoints {
         instruction::Skill of = instruction::Skill::detection;
         v1::ScorePoint point;
     };
-    std::vector<Point> points;          ///< by time
-    std::vector<v1::ScoreFact> faults;  ///< each fault with its first sign
+    std::vector<Point> points;             ///< by time
+    std::vector<v1::ScoreFact> faults;     ///< each fault that was judged, with its first sign
+    std::vector<v1::ScoreFault> injected;  ///< every fault
 };
 TeamPoints judge_team(const TeamCase& judged);
 

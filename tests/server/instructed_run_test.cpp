@@ -281,7 +281,8 @@ TEST_CASE("a fork of a hidden run, which a director may make, tells nobody of th
     REQUIRE(run.ask("instructor", "POST", "/api/v1/rehearsals",
                     R"({"fork":{"run":1,"at":"E-10:00","paused":true},"pace":1})")
                 .status == 201);
-    for (const char* what : {"/api/v1/runs/1/plan", "/api/v1/runs/1/interventions", "/api/v1/runs/2/plan"})
+    for (const char* what :
+         {"/api/v1/runs/1/plan", "/api/v1/runs/1/interventions", "/api/v1/runs/1/score", "/api/v1/runs/2/plan"})
         CHECK(status(what) == 403);
     const auto audit = run.ask("administrator", "GET", "/api/v1/audit").body;
     CHECK_THAT(audit, Catch::Contains("GET /api/v1/runs/2/plan"));
@@ -290,7 +291,8 @@ TEST_CASE("a fork of a hidden run, which a director may make, tells nobody of th
     run.order(R"({"stop":true})");
     for (int i = 0; i < 500 && status("/api/v1/runs/2/plan") != 200; ++i)
         std::this_thread::sleep_for(std::chrono::milliseconds{20});
-    for (const char* what : {"/api/v1/runs/1/plan", "/api/v1/runs/1/interventions", "/api/v1/runs/2/plan"})
+    for (const char* what :
+         {"/api/v1/runs/1/plan", "/api/v1/runs/1/interventions", "/api/v1/runs/1/score", "/api/v1/runs/2/plan"})
         CHECK(status(what) == 200);
 }
 

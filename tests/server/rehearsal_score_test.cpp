@@ -267,6 +267,112 @@ TEST_CASE("what showed nowhere is not judged, and a plan's own words come before
     CHECK(judged.sum() == Approx(100.0));
 }
 
+TEST_CASE("each fault stands with its signs by when they were on board and received, and with the first act after them",
+          "[score][R59]") {
+    auto facts = ended();
+    instruction::Inject inject;
+    inject.id = "mine";
+    inject.handling.signs = {"MORTAR", "speed_mps", "PARACHUTE"};
+    inject.handling.team = {{Skill::detection, Expectation::Act::acknowledge, {"Navigation"}, 20.0},
+                            {Skill::diagnosis, Expectation::Act::note, {"mortar"}, 60.0},
+                            {Skill::action, Expectation::Act::no_command, {}, 500.0}};
+    facts.plan.emplace().injects.push_back(inject);
+    add_radar_fault(facts, 8.0, "mine");
+    const auto event = [](double received_e_s, double on_board_e_s, const char* name, v1::Source source) {
+        auto item = item_at(received_e_s);
+        item.mutable_event()->set_name(name);
+        item.mutable_event()->set_sclk(entry_s + on_board_e_s);
+        item.mutable_event()->set_source(source);
+        return item;
+    };
+    facts.heard = {event(12.0, 9.0, "MORTAR", v1::SOURCE_REALTIME),
+                   event(390.0, 10.0, "PARACHUTE", v1::SOURCE_RECORDED)};
+    auto begun = item_at(14.0);
+    begun.mutable_procedure_act()->set_procedure("uhf_lost");
+    begun.mutable_procedure_act()->set_number(1);
+    begun.mutable_procedure_act()->set_by("Dan");
+    facts.room = {begun};
+    add_note(facts, 5.0, "before it");
+    add_note(facts, 30.0, "the mortar");
+    facts.end = Ert{item_at(400.0).ert_us()};
+    auto told = score(facts);
+    REQUIRE(told.faults_size() == 1);
+    const auto& fault = told.faults(0);
+    CHECK(fault.text() == "radar A silent, for 10 s");
+    CHECK(fault.inject() == "mine");
+    CHECK(fault.e_s() == 8.0);
+    CHECK(fault.felt_e_s() == 8.0);
+    REQUIRE(fault.signs_size() == 3);
+    CHECK(fault.signs(0).on_board_e_s() == Approx(9.0));
+    CHECK(fault.signs(0).heard_e_s() == Approx(12.0));
+    CHECK_FALSE(fault.signs(1).has_heard_e_s());
+    CHECK(fault.signs(2).on_board_e_s() == Approx(10.0));  // what only the recording has could have been seen
+    CHECK_FALSE(fault.signs(2).has_heard_e_s());
+    CHECK(fault.seen_e_s() == Approx(12.0));
+    CHECK(fault.first_act().kind() == "procedure");
+    CHECK(fault.first_act().by() == "Dan");
+    CHECK(fault.first_act().text() == "began procedure uhf_lost 1");
+    CHECK(fault.first_act().e_s() == Approx(14.0));
+    CHECK(Texts{fault.not_judged().begin(), fault.not_judged().end()} ==
+          Texts{"acknowledges Navigation within 20 s: no such alarm was raised by it",
+                "sends no command for 500 s: the run ended before"});
+    REQUIRE(told.acts_size() == 3);
+    CHECK(told.acts(0).kind() == "note");
+    CHECK(told.acts(0).text() == "wrote “before it”");
+    facts.heard.clear();
+    told = score(facts);
+    CHECK_FALSE(told.faults(0).has_seen_e_s());
+    CHECK_FALSE(told.faults(0).has_first_act());
+    CHECK(told.faults(0).not_judged_size() == 3);
+    CHECK(told.faults(0).not_judged(1) == "writes of “mortar” in the log within 60 s: no sign of it was received");
+    facts.report.mutable_run()->mutable_forked_from()->set_e_s(50.0);
+    CHECK(score(facts).faults(0).not_judged(0) == "all of it: it was done before the fork");
+}
+
+TEST_CASE("acts on procedures and positions are told in words, and show that somebody is there", "[score][R59]") {
+    auto facts = ended();
+    add_radar_fault(facts, 8.0);
+    facts.alarms = {limit(10.0, v1::Alarm::watch)};
+    const auto of_procedure = [](double e_s, v1::ProcedureAct::Kind kind, const char* step, const char* reason) {
+        auto item = item_at(e_s);
+        auto& act = *item.mutable_procedure_act();
+        act.set_number(2);
+        act.set_kind(kind);
+        act.set_procedure("start");
+        act.set_step(step);
+        act.set_reason(reason);
+        act.set_by("Ann");
+        return item;
+    };
+    const auto of_position = [](double e_s, v1::PositionAct::Kind kind) {
+        auto item = item_at(e_s);
+        auto& act = *item.mutable_position_act();
+        act.set_kind(kind);
+        act.set_position("gnc");
+        act.set_by("Bob");
+        act.set_to("Cem");
+        act.set_subject("do edl");
+        return item;
+    };
+    using Act = v1::ProcedureAct;
+    facts.room = {of_procedure(1.0, Act::begin, "", ""),      of_procedure(2.0, Act::tick, "look", "seen twice"),
+                  of_procedure(3.0, Act::choose, "look", ""), of_procedure(4.0, Act::skip, "look", "no time"),
+                  of_procedure(5.0, Act::hold, "", "wait"),   of_procedure(6.0, Act::release, "", ""),
+                  of_position(7.0, v1::PositionAct::take),    of_position(7.5, v1::PositionAct::offer),
+                  of_position(20.0, v1::PositionAct::poll),   of_position(21.0, v1::PositionAct::no_go),
+                  of_position(500.0, v1::PositionAct::leave)};
+    facts.end = Ert{item_at(400.0).ert_us()};
+    const auto judged = score(facts);
+    Texts told;
+    for (const auto& act : judged.acts()) told.push_back(act.by() + " " + act.text());
+    CHECK(told == Texts{"Ann began procedure start 2", "Ann ticked look of start 2: seen twice",
+                        "Ann chose way 1 at look of start 2", "Ann skipped look of start 2: no time",
+                        "Ann held start 2: wait", "Ann released start 2", "Bob took gnc", "Bob offered gnc to Cem",
+                        "Bob called a poll: do edl", "Bob said no go as gnc"});
+    CHECK(points(judged, "action") ==
+          Texts{"sends no command for 60 s: 100, nothing was sent; somebody was there: Ann: began procedure start 2"});
+}
+
 TEST_CASE("calls are judged from when what they are of was heard live, and those of what nobody heard are not",
           "[score][R59]") {
     auto by = rubric();

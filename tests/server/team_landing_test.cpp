@@ -51,7 +51,7 @@ class Team {
     explicit Team(ScoreFacts& facts) : facts_(facts) {}
 
     void acknowledge_all(double after_s) {
-        const auto raised = acts_of(facts_.report, facts_.alarms, {}, {}, tests::shipped_dictionary()).raised.all;
+        const auto raised = acts_of(facts_.report, facts_.alarms, {}, {}, {}, tests::shipped_dictionary()).raised.all;
         for (const auto& alarm : raised) {
             auto item = at(alarm.e_s + after_s);
             item.mutable_alarm_action()->set_alarm(alarm.name);
@@ -69,7 +69,7 @@ class Team {
     }
     /// When an event or tone of this name was first received.
     double heard(const char* name) const {
-        const auto acts = acts_of(facts_.report, {}, facts_.heard, {}, tests::shipped_dictionary());
+        const auto acts = acts_of(facts_.report, {}, {}, facts_.heard, {}, tests::shipped_dictionary());
         const auto times = acts.heard.find(name);
         INFO(name);
         REQUIRE(times != acts.heard.end());

@@ -52,6 +52,8 @@ const DATA = {
   vehicle: openedLater(async () => (await import('./vehicle/view')).Vehicle),
 };
 
+const Debrief = openedLater(async () => (await import('./debrief/view')).Debrief);
+
 function Data() {
   const Shown = DATA[tab.value];
   return (
@@ -125,6 +127,11 @@ const ALONE = {
   commands: Commands,
   data: Data,
   waiting: WaitingFor,
+  debrief: () => (
+    <Panel name="debrief" title="Debrief">
+      <Debrief />
+    </Panel>
+  ),
   phases: () => null, // the strip at the top of every page shows the phases already
   ...(Object.fromEntries(TABS.map(({ id, title }) => [id, inPanel(id, title)])) as unknown as Record<
     Tab,

@@ -7,8 +7,9 @@ import { useForTest } from '../run/session';
 import { aDictionary, aRun, aStore } from '../testing/fixtures';
 import { aServer } from '../testing/server';
 import type { Plan } from './plan';
-import { Review, scoreText, shareWords } from './review';
-import type { Score } from './review';
+import { Review, scoreText } from './review';
+import { shareWords } from './score';
+import type { Score } from './score';
 
 const server = aServer();
 const SCORE: Score = {
@@ -32,6 +33,8 @@ const SCORE: Score = {
   ],
   sum: 100,
   rule: 'A rule of Aeolis',
+  faults: [],
+  acts: [],
 };
 const PLAN: Plan = {
   name: 'radar',

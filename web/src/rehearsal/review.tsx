@@ -12,25 +12,11 @@ import { fromEntry } from '../run/time';
 import { InterventionList } from './instructor_panel';
 import { askInterventions, ofRun } from './instructor';
 import type { Intervention } from './instructor';
-import { askPlan, fateOf, planOf, titleOf } from './plan';
+import { askPlan, fateOf, planOf } from './plan';
 import type { Plan } from './plan';
 import { PlanView } from './plan_view';
-
-/** The server's answer (schema/aeolis/v1/score.proto). */
-export interface Score {
-  facts: readonly { of: string; text: string; e_s?: number }[];
-  terms: readonly { name: string; worth: number; points: number; why: string; judged: readonly ScorePoint[] }[];
-  sum: number; // of 100
-  rule: string;
-}
-/** Something that a good team does, and what was done. */
-interface ScorePoint {
-  expected: string;
-  evidence: string;
-  share: number; // of its part of the term, 0 … 1
-  e_s?: number; // from when on it counted
-  inject: string; // of the run's plan; empty: none of it
-}
+import { Points, inOrder, shareWords, termWords } from './score';
+import type { Score } from './score';
 
 const open = signal(false);
 /** `noPlan`: why the plan cannot be had. A version that no longer reads it still has the score. */
@@ -53,19 +39,6 @@ async function judge(run: RunStore): Promise<void> {
     if (store.value === run) problem.value = wordsFor(error);
   }
 }
-
-const termWords = ({ points, worth }: Score['terms'][number]): string => `${points.toFixed(1)} of ${worth}`;
-
-/** "full", "half", "none", else a percentage that never says 0 or 100. */
-export function shareWords(share: number): string {
-  if (share >= 1) return 'full';
-  if (share <= 0) return 'none';
-  return share === 0.5 ? 'half' : `${Math.min(99, Math.max(1, Math.round(share * 100)))} %`;
-}
-
-/** The points in order of time; those without a time come last. */
-const inOrder = (points: readonly ScorePoint[]): readonly ScorePoint[] =>
-  points.toSorted((one, other) => (one.e_s ?? Number.MAX_VALUE) - (other.e_s ?? Number.MAX_VALUE));
 
 /** The review as text, for copying. */
 export function scoreText(title: string, of: Score, interventions: readonly Intervention[], plan?: Plan): string {
@@ -131,25 +104,6 @@ function Copy({ text }: { text: string }) {
   );
 }
 
-/** What the points of a term rest on. */
-function Points({ of, plan }: { of: readonly ScorePoint[]; plan: Plan | undefined }) {
-  if (of.length === 0) return null;
-  return (
-    <ul class="score-points">
-      {inOrder(of).map((point, i) => (
-        <li key={i}>
-          <time>{point.e_s === undefined ? '' : fromEntry(point.e_s, { tenths: true })}</time>{' '}
-          <b>{shareWords(point.share)}</b>{' '}
-          <span>
-            {point.expected}: {point.evidence}
-            {point.inject && <span class="status-dim"> ({titleOf(plan, point.inject)})</span>}
-          </span>
-        </li>
-      ))}
-    </ul>
-  );
-}
-
 function Judged({ run, of, noPlan }: { run: RunStore; of: Score; noPlan: string }) {
   const done = ofRun(run);
   const plan = planOf(run);
@@ -192,6 +146,11 @@ function Judged({ run, of, noPlan }: { run: RunStore; of: Score; noPlan: string 
         </tbody>
       </table>
       <p class="status-dim">{of.rule}</p>
+      <p>
+        <a href={`?panel=debrief&run=${run.id}`} target="_blank" rel="noopener" data-testid="open-debrief">
+          the debrief: what was done against what was known, missed steps, forks; for paper, too
+        </a>
+      </p>
       <p>
         <Copy text={scoreText(title, of, done, plan)} />
       </p>

@@ -209,6 +209,11 @@ export function Rehearsal() {
                         show
                       </button>
                     )}
+                    {state === 'finished' && !isReal(each) && (
+                      <a href={`?panel=debrief&run=${String(each.run)}`} target="_blank" rel="noopener">
+                        debrief
+                      </a>
+                    )}
                     {state === 'interrupted' && canContinue(each) && (
                       <button
                         type="button"
