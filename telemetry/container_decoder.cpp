@@ -234,6 +234,7 @@ class Reading {
         if (!included)
             return stop(where + " has a condition that is not understood, or whose value is not known", entry.line);
         if (!*included) return true;
+        if (entry.what == PacketEntry::What::around) return stop(where + " holds itself", entry.line);
         if (entry.what == PacketEntry::What::unknown) return stop(where + " is not supported", entry.line);
         const auto offset = evaluate_from(std::numeric_limits<std::int64_t>::min(), entry.offset_bits);
         const auto count = evaluate(entry.count);
@@ -376,7 +377,8 @@ class Reading {
         Datum raw = std::visit([](auto value) -> Datum { return value; }, number_in(field, bits, type.coding));
         if (const auto* real = std::get_if<double>(&raw); real != nullptr && !std::isfinite(*real)) {
             no_numbers_.insert(contents.values.size());
-            if (type.coding.form == Coding::Form::bcd) note_unread(type.line);
+            if (type.coding.form == Coding::Form::bcd || type.coding.form == Coding::Form::bcd_octets)
+                note_unread(type.line);
             contents.values.push_back({name, field, {}, position, bits, reading_});
             return true;
         }
@@ -416,6 +418,8 @@ class Reading {
         const Coding& coding = type.coding;
         auto bits = evaluate(coding.bits);
         if (!bits) return stop("the size of " + name + " cannot be known", type.line);
+        if (coding.most_bits > 0.0 && static_cast<double>(*bits) > coding.most_bits)
+            return stop(name + " is longer than its maxSizeInBits", type.line);
         if (coding.boxed && !has(*bits)) return cut(name, *bits, type.line);
         const std::size_t begin = position_;
         const std::size_t end = position_ + *bits;
@@ -528,7 +532,8 @@ std::vector<std::size_t> ContainerDecoder::roots_of(const PacketModel& model) {
     std::vector<bool> part_of_other(model.containers.size(), false);
     for (const PacketContainer& container : model.containers)
         for (const PacketEntry& entry : container.entries)
-            if (entry.what == PacketEntry::What::container) part_of_other[entry.index] = true;
+            if (entry.what == PacketEntry::What::container || entry.what == PacketEntry::What::around)
+                part_of_other[entry.index] = true;
     std::vector<std::size_t> roots;
     for (std::size_t i = 0; i < model.containers.size(); ++i) {
         const PacketContainer& container = model.containers[i];

@@ -408,7 +408,9 @@ bool ContainerPlan::read_text(const Step& step, Run& run) const {
     const Coding& coding = *step.coding;
     const auto most = evaluate(step.index, run);
     const std::size_t begin = run.at;
-    if (!most || (coding.boxed && static_cast<std::size_t>(*most) > run.bits() - begin)) return false;
+    if (!most || (coding.most_bits > 0.0 && static_cast<double>(*most) > coding.most_bits) ||
+        (coding.boxed && static_cast<std::size_t>(*most) > run.bits() - begin))
+        return false;
     const auto most_bits = static_cast<std::size_t>(*most);
     TextPlace place{most_bits, 0};
     if (coding.leading_size_bits > 0) {

@@ -233,7 +233,9 @@ class ContainerPlan::Compiler {
 
     /// Whether the entry is of a kind that is compiled, and its place is.
     bool add_entry(const PacketEntry& entry, std::optional<std::int64_t> start, Chain& chain, unsigned depth) {
-        if (entry.what == PacketEntry::What::unknown || fixed_bits(entry.gap_bits) != 0U) return false;
+        if (entry.what == PacketEntry::What::unknown || entry.what == PacketEntry::What::around ||
+            fixed_bits(entry.gap_bits) != 0U)
+            return false;
         begin_entry(entry, chain);
         if (!add_location(entry, start, chain)) return false;
         const auto count = fixed_bits(entry.count);
@@ -446,7 +448,8 @@ class ContainerPlan::Compiler {
         Place& place = chain.places[place_index];
         const PacketType& type = *place.type;
         const bool exact = is_real(type.coding) || place.bits <= exact_bits;
-        if (place.op != Op::numbers || !exact || type.coding.form == Coding::Form::bcd || place.valid != none ||
+        const bool digits = type.coding.form == Coding::Form::bcd || type.coding.form == Coding::Form::bcd_octets;
+        if (place.op != Op::numbers || !exact || digits || place.valid != none ||
             (place.loop != 0 && place.loop != chain.loop))
             return std::nullopt;
         Operand operand{.position_bits = static_cast<std::uint32_t>(place.position_bits),

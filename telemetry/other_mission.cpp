@@ -155,7 +155,8 @@ class OtherMission::Builder {
         const PacketContainer& container = model_.containers[index];
         if (container.base) add_container(*container.base, depth + 1);
         for (const PacketEntry& entry : container.entries) {
-            if (entry.what == PacketEntry::What::unknown) return;  // decoding ends here
+            if (entry.what == PacketEntry::What::unknown || entry.what == PacketEntry::What::around)
+                return;  // decoding ends here
             if (entry.what == PacketEntry::What::container) {
                 add_container(entry.index, depth + 1);
                 continue;

@@ -45,10 +45,10 @@ double mil1750a_of(std::uint64_t field) {
     return std::ldexp(mantissa, static_cast<int>(sign_extend(field & 0xFF, 8)) - 23);
 }
 
-RawNumber bcd_of(std::uint64_t field, unsigned bits) {
+RawNumber bcd_of(std::uint64_t field, unsigned bits, unsigned digit_bits) {
     std::uint64_t value = 0;
-    for (unsigned at = (bits + 3) / 4; at > 0; --at) {
-        const auto digit = (field >> (4 * (at - 1))) & 0xF;
+    for (unsigned at = (bits + digit_bits - 1) / digit_bits; at > 0; --at) {
+        const auto digit = (field >> (digit_bits * (at - 1))) & ((1U << digit_bits) - 1);
         if (digit > 9) return NAN;
         value = value * 10 + digit;
     }
@@ -80,7 +80,8 @@ RawNumber number_in(std::uint64_t field, unsigned bits, const Coding& coding) {
     case Coding::Form::ones_complement: return below_zero ? negative(~field & all) : static_cast<std::int64_t>(field);
     case Coding::Form::sign_and_magnitude:
         return below_zero ? negative(field & ~sign) : static_cast<std::int64_t>(field);
-    case Coding::Form::bcd: return bcd_of(field, bits);
+    case Coding::Form::bcd: return bcd_of(field, bits, 4);
+    case Coding::Form::bcd_octets: return bcd_of(field, bits, 8);
     case Coding::Form::ieee754: return real_of(field, bits);
     case Coding::Form::mil1750a: return mil1750a_of(field);
     case Coding::Form::unsigned_integer:

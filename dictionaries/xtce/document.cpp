@@ -2,6 +2,7 @@
 #include "dictionaries/xtce/document.hpp"
 
 #include "dictionaries/words.hpp"
+#include "dictionaries/xtce/entities.hpp"
 #include "dictionaries/xtce/text_encoding.hpp"
 
 #include <algorithm>
@@ -11,7 +12,9 @@ namespace aeolis::dictionary::xtce {
 std::unique_ptr<Document> Document::parse(const std::string& in_file, Findings& findings) {
     const auto converted = to_utf8(in_file, findings);
     if (!converted) return nullptr;
-    const std::string& text = *converted;
+    const auto expanded = with_entities(*converted, findings);
+    if (!expanded) return nullptr;
+    const std::string& text = *expanded;
     auto document = std::make_unique<Document>();
     document->line_starts_.push_back(0);
     for (std::size_t i = 0; i < text.size(); ++i)

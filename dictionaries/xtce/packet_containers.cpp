@@ -149,6 +149,61 @@ class ContainerReader {
     std::map<std::string, std::size_t> containers_;
 };
 
+/// Breaks what would never end: containers that hold or derive from themselves, directly or through others.
+class CycleBreaker {
+  public:
+    CycleBreaker(const ModelParts& parts, std::vector<PacketContainer>& containers)
+        : containers_(containers), states_(containers.size()) {
+        for (const Symbol& symbol : parts.symbols.all())
+            if (symbol.kind == Kind::container) elements_.push_back(symbol.element);
+        for (std::size_t i = 0; i < containers.size(); ++i)
+            if (states_[i] == State::unseen) visit(i, parts.report);
+    }
+
+  private:
+    enum class State : std::uint8_t { unseen, open, done };
+    /// A container and which of its base (0) and entries (from 1 on) is next.
+    struct Visit {
+        std::size_t container = 0, next = 0;
+    };
+
+    void visit(std::size_t from, Reporter& report) {
+        std::vector<Visit> path{{from, 0}};
+        states_[from] = State::open;
+        while (!path.empty()) {
+            const std::size_t at = path.back().container, part = path.back().next++;
+            PacketContainer& container = containers_[at];
+            if (part > container.entries.size()) {
+                states_[at] = State::done;
+                path.pop_back();
+                continue;
+            }
+            const auto to = part == 0 ? container.base : included(container.entries[part - 1]);
+            if (!to || states_[*to] == State::done) continue;
+            if (states_[*to] == State::unseen) {
+                states_[*to] = State::open;
+                path.push_back({*to, 0});
+            } else if (part == 0) {
+                report.fault(elements_[at], "container " + in_quotes(container.name) + " derives from itself, by " +
+                                                in_quotes(containers_[*to].name) + ": it takes no packet");
+                container.base.reset();
+                container.when.form = Condition::Form::unknown;
+            } else {
+                report.fault(elements_[at], "container " + in_quotes(container.name) + " holds itself, by " +
+                                                in_quotes(containers_[*to].name) + ": packets are read up to it");
+                container.entries[part - 1].what = PacketEntry::What::around;
+            }
+        }
+    }
+    static std::optional<std::size_t> included(const PacketEntry& entry) {
+        return entry.what == PacketEntry::What::container ? std::optional{entry.index} : std::nullopt;
+    }
+
+    std::vector<PacketContainer>& containers_;
+    std::vector<State> states_;
+    std::vector<pugi::xml_node> elements_;
+};
+
 }  // namespace
 
 std::vector<PacketContainer> read_model_containers(const ModelParts& parts,
@@ -158,6 +213,7 @@ std::vector<PacketContainer> read_model_containers(const ModelParts& parts,
     std::vector<PacketContainer> containers;
     for (const Symbol& symbol : parts.symbols.all())
         if (symbol.kind == Kind::container) containers.push_back(reader.read(symbol));
+    const CycleBreaker broken{parts, containers};
     return containers;
 }
 

@@ -72,7 +72,8 @@ struct Coding {
         twos_complement,
         ones_complement,
         sign_and_magnitude,
-        bcd,  ///< four bits per decimal digit
+        bcd,         ///< four bits per decimal digit
+        bcd_octets,  ///< an octet per decimal digit
         ieee754,
         mil1750a,
         text,
@@ -83,6 +84,7 @@ struct Coding {
     Form form = Form::unsigned_integer;
     Characters characters = Characters::utf8;  ///< of text; US-ASCII is a part of it
     Amount bits{};                             ///< of text and octets: without terminator or leading size
+    double most_bits = 0.0;                    ///< of text in a box: it is never longer; 0: as long as the box
     bool least_significant_octet_first = false;
     bool least_significant_bit_first = false;
     std::vector<std::uint8_t> terminator{};  ///< a character that ends the text; `bits` is then its maximum size
@@ -156,7 +158,12 @@ struct PacketParameter {
 };
 
 struct PacketEntry {
-    enum class What : std::uint8_t { parameter, container, unknown };
+    enum class What : std::uint8_t {
+        parameter,
+        container,
+        around,  ///< a container that holds this one, and is never read in it
+        unknown,
+    };
     enum class From : std::uint8_t { previous, container_start };
 
     What what = What::unknown;

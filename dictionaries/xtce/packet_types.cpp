@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "common/time.hpp"
 #include "dictionaries/words.hpp"
 #include "dictionaries/xtce/packet_model_reader.hpp"
 
@@ -6,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <string_view>
 #include <utility>
 
@@ -45,8 +47,22 @@ std::optional<Coding::Form> integer_form(std::string_view word) {
     if (word == "twosComplement" || word == "twosCompliment") return twos_complement;
     if (word == "onesComplement" || word == "onesCompliment") return ones_complement;
     if (word == "signMagnitude") return sign_and_magnitude;
-    if (word == "BCD" || word == "packedBCD") return bcd;
+    if (word == "BCD") return bcd_octets;
+    if (word == "packedBCD") return bcd;
     return std::nullopt;
+}
+
+/// Whether a time can be counted from it: by name, or a date, also with a time of the day and its offset from UTC.
+bool is_epoch(const std::string& epoch) {
+    constexpr std::array<std::string_view, 5> names{"TAI", "GPS", "J2000", "UNIX", "POSIX"};
+    if (std::ranges::find(names, epoch) != names.end()) return true;
+    constexpr std::size_t date_size = 10, offset_size = 6;  // 2000-01-01, +01:00
+    if (epoch.size() == date_size) return scet_from_text(epoch + "T00:00:00").has_value();
+    if (scet_from_text(epoch)) return true;
+    if (epoch.size() < date_size + offset_size) return false;
+    const std::string offset = epoch.substr(epoch.size() - offset_size);
+    return (offset[0] == '+' || offset[0] == '-') && offset[3] == ':' &&
+           scet_from_text(epoch.substr(0, epoch.size() - offset_size)).has_value();
 }
 
 std::optional<Coding::Characters> characters_of(std::string_view word) {
@@ -308,6 +324,7 @@ void ModelTypes::read_text(const Symbol& symbol, pugi::xml_node coding, PacketTy
     type.coding.boxed = size.child("Fixed") || size.child("FixedValue") || size.child("DiscreteLookupList") ||
                         (size.child("DynamicValue") && !(delimited && sized_by == "_yamcs_ignore"));
     if (type.coding.boxed) type.coding.bits = parts_.amount(symbol.scope, size);
+    if (type.coding.boxed && variable.attribute("maxSizeInBits")) type.coding.most_bits = most_bits.value_or(0.0);
     if (const pugi::xml_node leading = size.child("LeadingSize")) {
         const auto tag_bits = parts_.report.integer_or(leading, "sizeInBitsOfSizeTag", 16, 1, 64);
         type.coding.leading_size_bits = static_cast<unsigned>(tag_bits.value_or(0));
@@ -360,6 +377,8 @@ Calibration ModelTypes::calibration(pugi::xml_node calibrator) {
             parts_.report.fault(polynomial, "a polynomial without terms: its values are undefined");
             result.known = false;
         }
+        // The value itself: as a whole number it keeps its last digit.
+        if (result.known && result.polynomial == std::vector{0.0, 1.0}) result.polynomial.clear();
         return result;
     }
     if (const pugi::xml_node spline = calibrator.child("SplineCalibrator")) {
@@ -396,16 +415,26 @@ Calibration ModelTypes::calibration(pugi::xml_node calibrator) {
 }
 
 void ModelTypes::read_labels(pugi::xml_node element, PacketType& type) {
+    std::map<std::int64_t, std::pair<std::int64_t, std::string>> of_values;  // first value: last, label
     for (const pugi::xml_node entry : element.child("EnumerationList").children("Enumeration")) {
         const auto first = to_integer(number_digits(entry.attribute("value").value()));
         const auto last =
             entry.attribute("maxValue") ? to_integer(number_digits(entry.attribute("maxValue").value())) : first;
         const std::string label = entry.attribute("label").value();
         if (!first || !last || *last < *first || label.empty()) {
-            parts_.report.fault(entry, first && last && *last >= *first ? "a value without a label"
-                                                                        : "its value is not a whole number");
+            parts_.report.fault(entry, !first || !last ? "its value is not a whole number"
+                                       : label.empty()
+                                           ? "a value without a label"
+                                           : "label " + in_quotes(label) + ": maxValue " + std::to_string(*last) +
+                                                 " is below value " + std::to_string(*first) + ": it labels nothing");
             continue;
         }
+        const auto above = of_values.upper_bound(*last);  // the labels before it may have the same values
+        if (const auto same = above == of_values.begin() ? above : std::prev(above);
+            same != above && same->second.first >= *first && same->second.second != label)
+            parts_.report.fault(entry, "labels " + in_quotes(same->second.second) + " and " + in_quotes(label) +
+                                           " are of one value: it has the first of the file");
+        of_values.try_emplace(*first, *last, label);
         if (type.labels.size() < label_values_max)
             type.labels.push_back({*first, *last, label, parts_.report.line(entry)});
     }
@@ -446,6 +475,10 @@ void ModelTypes::read_reference_time(const Symbol& symbol, PacketType& type) {
         const auto letters = [](char c) { return static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c); };
         type.epoch = epoch.text().as_string();
         std::ranges::transform(type.epoch, type.epoch.begin(), letters);
+        if (!is_epoch(type.epoch))
+            parts_.report.fault(epoch, "epoch " + in_quotes(type.epoch) +
+                                           " is neither TAI, GPS, J2000, UNIX, POSIX nor a date: times are given as "
+                                           "seconds after it");
     }
     if (const pugi::xml_node since = reference.child("OffsetFrom")) {
         const auto found = parts_.parameter(symbol.scope, since, "parameterRef");

@@ -436,7 +436,7 @@ TEST_CASE("values that are not read are counted, those that are undefined by the
                  "010203 040506 07") == 2);
     CHECK(unread(integer("sizeInBits='16' bitOrder='reversed'"), "0102 0304 07") == 2);
     CHECK(unread(integer("sizeInBits='8'", calibrated("<MathOperationCalibrator/>")), "01 02 07") == 2);
-    CHECK(unread(integer("sizeInBits='8' encoding='BCD'"), "1a 12 07") == 1);
+    CHECK(unread(integer("sizeInBits='8' encoding='packedBCD'"), "1a 12 07") == 1);
     CHECK(unread(integer("sizeInBits='8' encoding=''"), "01 02 07") == 2);
     CHECK(unread(word("UTF-32", "32"), "00000041 00000042 07") == 2);
     CHECK(unread(word("UTF-8", "16"), "ff41 4142 07") == 1);
@@ -458,7 +458,7 @@ TEST_CASE("values that are not read are counted, those that are undefined by the
     CHECK(unread("<StringParameterType name='t'><IntegerDataEncoding/></StringParameterType>", "41 42 07") == 2);
 
     CHECK(unread(integer("sizeInBits='8'", calibrated(spline)), "01 02 07") == 0);
-    CHECK(unread(integer("sizeInBits='8' encoding='BCD'"), "19 12 07") == 0);
+    CHECK(unread(integer("sizeInBits='8' encoding='packedBCD'"), "19 12 07") == 0);
     CHECK(unread(real("sizeInBits='32'"), "7fc00000 7f800000 07") == 0);
     CHECK(unread(word("UTF-8", "16"), "4141 4142 07") == 0);
     CHECK(unread(time("scale='2'><IntegerDataEncoding sizeInBits='16'/>"), "0001 0002 07") == 0);
@@ -660,8 +660,9 @@ TEST_CASE("a condition and a size may ask for a member of what is composed", "[t
     CHECK(mission.decode("08 0902 a1b2c3").container == "Root");
     const Mission dangling{
         types, {{"h", "head"}}, container("Root", entry("h"), base("Root", when("h/gone", "==", "7")))};
-    REQUIRE(dangling.findings.size() == 1);
+    REQUIRE(dangling.findings.size() == 2);
     CHECK(dangling.findings[0].message == "there is no parameter 'h/gone'");
+    CHECK_THAT(dangling.findings[1].message, Catch::Contains("'Root' derives from itself"));
 }
 
 TEST_CASE("time is seconds from the epoch, by offset and scale", "[telemetry]") {

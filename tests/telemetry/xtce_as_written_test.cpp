@@ -557,4 +557,112 @@ TEST_CASE("names that several parameters of a packet have are unique, and the sa
     CHECK(channels == std::vector<std::string>{"TEMP", "S/B/TEMP", "STATUS.x", "S/STATUS.x", "SPARE"});
 }
 
+TEST_CASE("a container that holds or derives from itself is a finding, also where no packet uses it",
+          "[telemetry][xtce][R56]") {
+    const auto holds = [](const std::string& name, const std::string& entries, const std::string& more = "") {
+        return "<SequenceContainer name='" + name + "'><EntryList>" + entries + "</EntryList>" + more +
+               "</SequenceContainer>";
+    };
+    const std::string a = "<ParameterRefEntry parameterRef='a'/>";
+    const auto entry = [](const std::string& name) { return "<ContainerRefEntry containerRef='" + name + "'/>"; };
+    const auto base = [](const std::string& name) { return "<BaseContainer containerRef='" + name + "'/>"; };
+    const auto found =
+        read({{"m.xml", system_of(u8, parameter("a", "u8"),
+                                  holds("P", a + entry("X")) + holds("X", entry("Y")) + holds("Y", a + entry("X")))}},
+             "01 02 03 04");
+    CHECK(found.findings ==
+          std::vector<std::string>{"m.xml: container 'Y' holds itself, by 'X': packets are read up to it"});
+    CHECK_THAT(found.values, Catch::StartsWith("a=1 a=2 ! an entry of Y holds itself"));
+    const auto unused = read({{"m.xml", system_of(u8, parameter("a", "u8"),
+                                                  holds("P", a) + holds("Z", entry("Z")) + holds("Q", "", base("R")) +
+                                                      holds("R", "", base("Q")))}},
+                             "01");
+    CHECK(unused.findings ==
+          std::vector<std::string>{"m.xml: container 'Z' holds itself, by 'Z': packets are read up to it",
+                                   "m.xml: container 'R' derives from itself, by 'Q': it takes no packet"});
+    CHECK(unused.values == "a=1");
+}
+
+TEST_CASE("labels that can never be, and two of one value, are findings that name them", "[telemetry][xtce][R56]") {
+    const auto found = read(
+        {{"m.xml",
+          system_of("<EnumeratedParameterType name='e'><IntegerDataEncoding/><EnumerationList><Enumeration value='1' "
+                    "label='A'/><Enumeration value='1' label='B'/><Enumeration value='2' maxValue='1' label='REV'/>"
+                    "<Enumeration value='3' maxValue='9' label='C'/><Enumeration value='9' maxValue='12' label='D'/>"
+                    "<Enumeration value='12' label='D'/></EnumerationList></EnumeratedParameterType>",
+                    parameter("a", "e"), container("P", {"a"}))}},
+        "01");
+    CHECK(found.values == "a=A");
+    CHECK(found.findings == std::vector<std::string>{
+                                "m.xml: labels 'A' and 'B' are of one value: it has the first of the file",
+                                "m.xml: label 'REV': maxValue 1 is below value 2: it labels nothing",
+                                "m.xml: labels 'C' and 'D' are of one value: it has the first of the file",
+                            });
+}
+
+TEST_CASE("BCD has an octet for each digit and packedBCD half of one, and other octets are no digits",
+          "[telemetry][xtce][R56]") {
+    const auto digits = [](const std::string& encoding, const char* packet) {
+        return read({{"m.xml",
+                      system_of("<IntegerParameterType name='d'><IntegerDataEncoding sizeInBits='16' encoding='" +
+                                    encoding + "'/></IntegerParameterType>",
+                                parameter("a", "d"), container("P", {"a"}))}},
+                    packet)
+            .values;
+    };
+    CHECK(digits("BCD", "0407") == "a=47");
+    CHECK(digits("BCD", "1234") == "a=undefined");
+    CHECK(digits("packedBCD", "1234") == "a=1234");
+    CHECK(digits("packedBCD", "0407") == "a=407");
+}
+
+TEST_CASE("a text is never longer than its maxSizeInBits, though its packet says so", "[telemetry][xtce][R56]") {
+    const auto text = [](const std::string& most, const char* packet) {
+        return read({{"m.xml", system_of(u8 +
+                                             "<StringParameterType name='t'><StringDataEncoding><Variable "
+                                             "maxSizeInBits='" +
+                                             most +
+                                             "'><DynamicValue><ParameterInstanceRef parameterRef='n'/>"
+                                             "<LinearAdjustment slope='8'/></DynamicValue></Variable>"
+                                             "</StringDataEncoding></StringParameterType>",
+                                         parameter("n", "u8") + parameter("s", "t") + parameter("z", "u8"),
+                                         container("P", {"n", "s", "z"}))}},
+                    packet)
+            .values;
+    };
+    CHECK(text("24", "03 616263 07") == "n=3 s=abc z=7");
+    CHECK(text("16", "03 616263 07") == "n=3 ! s is longer than its maxSizeInBits (line 1)");
+}
+
+TEST_CASE("an epoch that is neither a name of one nor a date is a finding", "[telemetry][xtce][R56]") {
+    const auto findings = [](const std::string& epoch) {
+        return read({{"m.xml", system_of("<AbsoluteTimeParameterType name='t'><Encoding><IntegerDataEncoding "
+                                         "sizeInBits='8'/></Encoding><ReferenceTime><Epoch>" +
+                                             epoch + "</Epoch></ReferenceTime></AbsoluteTimeParameterType>",
+                                         parameter("a", "t"), container("P", {"a"}))}},
+                    "01")
+            .findings;
+    };
+    for (const std::string known : {"TAI", "gps", "J2000", "UNIX", "POSIX", "2000-01-01", "2000-01-01T12:00:00",
+                                    "1980-01-06T00:00:00Z", "2000-01-01T11:58:55.816", "1970-01-01T00:00:00+01:00"}) {
+        CAPTURE(known);
+        CHECK(findings(known).empty());
+    }
+    for (const std::string unknown : {"foo", "2020-13-01", "UTC", "2000-01-01T12:00:00+1:00"}) {
+        CAPTURE(unknown);
+        REQUIRE(findings(unknown).size() == 1);
+        CHECK_THAT(findings(unknown)[0], Catch::Contains("is neither TAI, GPS, J2000, UNIX, POSIX nor a date"));
+    }
+}
+
+TEST_CASE("a whole number of 64 bits keeps its last digit through a polynomial that is the value itself",
+          "[telemetry][xtce][R56]") {
+    const std::string polynomial = "<IntegerParameterType name='u' signed='false'><IntegerDataEncoding sizeInBits='64'>"
+                                   "<DefaultCalibrator><PolynomialCalibrator><Term coefficient='0' exponent='0'/><Term "
+                                   "coefficient='1' exponent='1'/></PolynomialCalibrator></DefaultCalibrator>"
+                                   "</IntegerDataEncoding></IntegerParameterType>";
+    CHECK(read({{"m.xml", system_of(polynomial, parameter("a", "u"), container("P", {"a"}))}}, "0020000000000001")
+              .values == "a=9007199254740993");
+}
+
 }  // namespace telemetry_xtce_as_written_test
