@@ -33,4 +33,7 @@ struct MarkerFound {
 /// to come is not found; it begins in the last four octets.
 std::optional<MarkerFound> find_marker(std::span<const std::uint8_t> octets, std::size_t from);
 
+/// The same of a PLTU's marker FAF320. One that needs octets still to come begins in the last three octets.
+std::optional<MarkerFound> find_pltu_marker(std::span<const std::uint8_t> octets, std::size_t from);
+
 }  // namespace aeolis::telemetry

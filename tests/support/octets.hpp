@@ -37,4 +37,14 @@ inline std::vector<std::uint8_t> copy_of(std::span<const std::uint8_t> octets) {
     return {octets.begin(), octets.end()};
 }
 
+/// The octets behind `shift` bits of 0, 0 … 7, filled up with 0; with all bits inverted.
+inline std::vector<std::uint8_t> shifted(std::span<const std::uint8_t> octets, unsigned shift, bool inverted) {
+    std::vector<std::uint8_t> all(octets.size() + (shift > 0 ? 1 : 0));
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const unsigned before = i > 0 ? octets[i - 1] : 0U, here = i < octets.size() ? octets[i] : 0U;
+        all[i] = static_cast<std::uint8_t>((before << 8U | here) >> shift ^ (inverted ? 0xFFU : 0U));
+    }
+    return all;
+}
+
 }  // namespace aeolis::test

@@ -110,6 +110,49 @@ TEST_CASE("a frame within the data of a frame is data; when the outer one is dam
     CHECK(damaged.counters().bad_crc == 1);
 }
 
+TEST_CASE("PLTUs that begin at any bit, inverted or not, are found as those that do not, with fill around them",
+          "[telemetry][frames][R55]") {
+    std::mt19937 random{31};
+    const Octets fill = test::hex("352ef853352ef853352ef853");
+    Octets stream = fill;
+    std::vector<Octets> sent;
+    for (unsigned i = 0; i < 30; ++i) {
+        sent.push_back(test::random_octets(random, 1 + random() % 300));
+        append(stream, pltu_of({.spacecraft = 76, .sequence = static_cast<std::uint8_t>(i)}, sent.back()));
+        if (i % 3 != 0) append(stream, fill);
+    }
+    for (unsigned shift = 0; shift < 8; ++shift)
+        for (const bool inverted : {false, true}) {
+            CAPTURE(shift, inverted);
+            PltuReceiver receiver;
+            CHECK(received(receiver, test::shifted(stream, shift, inverted), random) == sent);
+            CHECK(receiver.counters().frames == sent.size());
+            CHECK(receiver.counters().bad_crc + receiver.counters().bad_header + receiver.counters().slips == 0);
+            CHECK(receiver.stray_octets() <= (shift > 0 ? 1 : 0));  // bits before the first octet
+        }
+}
+
+TEST_CASE("where bits are added to PLTUs, or all are inverted from there on, the frames behind are found again",
+          "[telemetry][frames][R55]") {
+    std::mt19937 random{32};
+    Octets first, second;
+    std::vector<Octets> sent;
+    for (unsigned i = 0; i < 20; ++i) {
+        sent.push_back(test::random_octets(random, 200));
+        append(i < 10 ? first : second,
+               pltu_of({.spacecraft = 76, .sequence = static_cast<std::uint8_t>(i)}, sent.back()));
+    }
+    for (const auto& [shift, inverted] : {std::pair{5U, false}, {0U, true}, {3U, true}}) {
+        CAPTURE(shift, inverted);
+        Octets stream = first;
+        append(stream, test::shifted(second, shift, inverted));
+        PltuReceiver receiver;
+        CHECK(received(receiver, stream, random) == sent);
+        CHECK(receiver.counters().slips == 1);
+        CHECK(receiver.counters().missing_frames == 0);
+    }
+}
+
 TEST_CASE("each spacecraft, channel and service has a frame sequence of its own", "[telemetry]") {
     PltuReceiver receiver;
     for (unsigned i = 0; i < 1000; ++i)
