@@ -33,6 +33,9 @@ struct DecodedValue {
 struct PacketTime {
     double seconds = 0.0;  ///< since `epoch`, or counts of the spacecraft's clock
     std::string epoch;     ///< as the file names it: "UNIX"; empty: not named
+    /// They are days of UTC and seconds of the day, not seconds that have passed: leap seconds are not counted.
+    bool days_of_utc = false;
+    bool leap_second = false;  ///< of those: within second 60, the last of its day
 };
 
 /// A value that stands in the packet and is not understood: of an encoding, a calibrator or a condition that is not

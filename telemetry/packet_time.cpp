@@ -41,10 +41,24 @@ std::optional<UtcInstant> since_date(Scet epoch, double seconds, const TimeKerne
     return tai_s ? kernels.leaps->utc_of_tai(*tai_s + seconds) : std::nullopt;
 }
 
+/// The instant of days and seconds of the day: by the calendar alone. None where the epoch is no midnight that is known.
+std::optional<UtcInstant> of_days(const PacketTime& time) {
+    constexpr double gps_epoch_s = -630763200.0;  // 1980-01-06 UTC
+    std::optional<double> epoch_s;
+    if (time.epoch == "UNIX" || time.epoch == "POSIX") epoch_s = unix_epoch_s;
+    if (time.epoch == "TAI") epoch_s = tai_epoch_s;  // of the same date as that of UTC
+    if (time.epoch == "GPS") epoch_s = gps_epoch_s;
+    if (const auto date = instant_of(time.epoch)) epoch_s = static_cast<double>(date->microseconds) / us_in_second;
+    if (!epoch_s) return std::nullopt;
+    const double second = *epoch_s + time.seconds - (time.leap_second ? 1.0 : 0.0);
+    return UtcInstant{static_cast<std::int64_t>(std::llround(second * us_in_second)), time.leap_second};
+}
+
 }  // namespace
 
 std::optional<UtcInstant> scet_of(const PacketTime& time, const TimeKernels& kernels) {
     if (!(std::abs(time.seconds) < seconds_max)) return std::nullopt;
+    if (time.days_of_utc && !time.epoch.empty()) return of_days(time);
     if (time.epoch == "UNIX" || time.epoch == "POSIX")
         return UtcInstant{static_cast<std::int64_t>(std::llround((unix_epoch_s + time.seconds) * 1.0e6)), false};
     if (const auto date = instant_of(time.epoch)) return since_date(*date, time.seconds, kernels);

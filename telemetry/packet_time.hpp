@@ -18,6 +18,7 @@ struct TimeKernels {
 
 /// The UTC instant of a packet's time, where known.
 ///
+/// Days and seconds of the day (CDS) since a known midnight need nothing: they are of UTC, without leap seconds.
 /// A spacecraft's clock (no epoch) needs both kernels, UNIX nothing, other epochs the leap seconds: GPS, TAI, J2000
 /// (2000-01-01T12:00:00 TT [naif-time]) and dates, "2000-01-01" or "2000-01-01T12:00:00". XTCE does not say of what
 /// scale a date is: taken as UTC, and the seconds since it as elapsed ones, leap seconds included; 1970-01-01 as UNIX

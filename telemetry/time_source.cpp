@@ -58,14 +58,21 @@ std::optional<PacketTime> cuc_by_preamble(std::span<const std::uint8_t> octets) 
     return cuc_of(octets.subspan(1), counts, code == cuc_tai ? "TAI" : "");
 }
 
+/// Days of UTC with milliseconds of the day; none where no day has as many.
+/// @param part_s  of a millisecond
+std::optional<PacketTime> time_of_day(double days, double milliseconds, double part_s, const std::string& epoch) {
+    constexpr double day_ms = 86'400'000.0, leap_second_ms = 1000.0;
+    if (!(milliseconds < day_ms + leap_second_ms) || !(part_s < milli)) return std::nullopt;
+    return PacketTime{days * day_s + milliseconds * milli + part_s, epoch, true, milliseconds >= day_ms};
+}
+
 /// @param below  octets of the part of a millisecond
 std::optional<PacketTime> cds_of(std::span<const std::uint8_t> octets, std::size_t days, std::size_t below,
                                  const std::string& epoch) {
     if ((below != 0 && below != 2 && below != 4) || octets.size() != days + cds_ms_octets + below) return std::nullopt;
     const double part_s = below == 4 ? pico : micro;
-    return PacketTime{number_in(octets.first(days)) * day_s + number_in(octets.subspan(days, cds_ms_octets)) * milli +
-                          number_in(octets.subspan(days + cds_ms_octets)) * part_s,
-                      epoch};
+    return time_of_day(number_in(octets.first(days)), number_in(octets.subspan(days, cds_ms_octets)),
+                       number_in(octets.subspan(days + cds_ms_octets)) * part_s, epoch);
 }
 
 std::optional<PacketTime> cds_by_preamble(std::span<const std::uint8_t> octets) {
@@ -127,9 +134,8 @@ Result<TimeSource> TimeSource::parse(const PacketModel& model, const std::string
                  "microseconds, cuc, cuc-preamble, cds or cds-preamble"};
 }
 
-std::optional<PacketTime> TimeSource::time_in(std::span<const DecodedValue> values) const {
+std::vector<const DecodedValue*> TimeSource::parts_in(std::span<const DecodedValue> values) const {
     const std::string wanted = name + member;
-    // The parameter itself, or its members and elements, in the order of the packet.
     std::vector<const DecodedValue*> parts;
     for (const DecodedValue& value : values) {
         if (value.parameter != parameter || !value.name.starts_with(wanted)) continue;
@@ -137,6 +143,18 @@ std::optional<PacketTime> TimeSource::time_in(std::span<const DecodedValue> valu
         if (inside && value.name[wanted.size()] != '.' && value.name[wanted.size()] != '[') continue;
         parts.push_back(&value);
     }
+    return parts;
+}
+
+bool TimeSource::is_defined_in(std::span<const DecodedValue> values) const {
+    const auto parts = parts_in(values);
+    return !parts.empty() && std::ranges::none_of(parts, [](const DecodedValue* part) {
+        return std::holds_alternative<std::monostate>(part->calibrated);
+    });
+}
+
+std::optional<PacketTime> TimeSource::time_in(std::span<const DecodedValue> values) const {
+    const auto parts = parts_in(values);
     if (parts.empty()) return std::nullopt;
     const auto with_epoch = [&](std::optional<PacketTime> time) {
         if (time && time->epoch.empty()) time->epoch = epoch;
@@ -155,7 +173,7 @@ std::optional<PacketTime> TimeSource::time_in(std::span<const DecodedValue> valu
         if (parts.size() < 2 || parts.size() > 3 || !number(1) || (parts.size() == 3 && !number(2)))
             return std::nullopt;
         const double below_s = parts.size() == 3 ? *number(2) * (parts[2]->bits > 16 ? pico : micro) : 0.0;
-        return PacketTime{*first * day_s + *number(1) * milli + below_s, epoch};
+        return time_of_day(*first, *number(1), below_s, epoch);
     }
     if (two && (form == Form::cuc || form == Form::as_fits)) {
         const auto fraction = std::get<std::uint64_t>(parts[1]->raw);

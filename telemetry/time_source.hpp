@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace aeolis::telemetry {
 
@@ -21,6 +22,7 @@ namespace aeolis::telemetry {
 ///          begin with the preamble (P-field), which says their sizes. [ccsds-301.0-b-4] Without FORM: seconds for a
 ///          number, cuc for two whole numbers. For octets FORM is needed, because the values of a clock may look like a
 ///          preamble
+///          Days of CDS are of UTC, of 86 400 s and with a leap second 86 401: more milliseconds are no time
 /// Epoch    that of the parameter's type; TAI where a preamble says so; else none is known
 struct TimeSource {
     enum class Form : std::uint8_t {
@@ -45,6 +47,12 @@ struct TimeSource {
 
     /// The time among a packet's values; none: the packet does not hold it, or it is undefined.
     std::optional<PacketTime> time_in(std::span<const DecodedValue> values) const;
+    /// Whether the parameter is among the values and defined. Where time_in() then gives none, it is not in this form.
+    bool is_defined_in(std::span<const DecodedValue> values) const;
+
+  private:
+    /// The parameter itself, or its members and elements, in the order of the packet.
+    std::vector<const DecodedValue*> parts_in(std::span<const DecodedValue> values) const;
 };
 
 }  // namespace aeolis::telemetry

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "telemetry/packet_time.hpp"
 #include "telemetry/time_source.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/octets.hpp"
@@ -92,6 +93,33 @@ TEST_CASE("a time that is not there, or not in that form, is none; a name that i
     CHECK_THAT(time_by("M"), Catch::StartsWith("there is no parameter 'M' in the XTCE file"));
     CHECK_THAT(time_by(""), Catch::StartsWith("there is no parameter ''"));
     CHECK_THAT(time_by("N:weeks"), Catch::StartsWith("there is no parameter 'N:weeks'"));
+}
+
+TEST_CASE("days with milliseconds are UTC: no leap second is added, and no day has more than 86 401 s",
+          "[telemetry][decode][R54]") {
+    const auto model = model_of();
+    const auto in = [&](const std::string& source, const std::string& b7, const std::string& b8) {
+        const auto contents = ContainerDecoder{model}.decode(
+            test::hex("000003e9 000000108000" + b7 + b8 + "00000020c000 000100000bb80001"));
+        REQUIRE(contents.problem.empty());
+        const auto parsed = TimeSource::parse(model, source);
+        REQUIRE(parsed);
+        CHECK(parsed->is_defined_in(contents.values));
+        return parsed->time_in(contents.values);
+    };
+    const std::string any7 = "1e000000104000", any8 = "00020000000a01f4";
+    // 1958-01-01 and 20000 days; with kernels or without, since there is nothing to look up.
+    const auto time = in("B7:cds-preamble", "404e200036ee80", any8);
+    REQUIRE(time);
+    CHECK(time_text(*time, {}) == "2012-278T01:00:00.000");
+    CHECK(time->seconds == 20000 * 86400.0 + 3600.0);
+    // The last day of 2016, 21549 days later, had a leap second.
+    CHECK(time_text(*in("B7:cds-preamble", "40542d05265bff", any8), {}) == "2016-366T23:59:59.999");
+    CHECK(time_text(*in("B7:cds-preamble", "40542d05265df4", any8), {}) == "2016-366T23:59:60.500");
+    CHECK(time_text(*in("B7:cds-preamble", "40542d05265fe7", any8), {}) == "2016-366T23:59:60.999");
+    CHECK_FALSE(in("B7:cds-preamble", "40542d05265fe8", any8));
+    CHECK_FALSE(in("B8:cds", any7, "4e20055d4a800000"));  // 90 000 000 ms
+    CHECK_FALSE(in("B8:cds", any7, "4e200000000103e8"));  // 1000 us of a millisecond
 }
 
 }  // namespace telemetry_time_source_test
