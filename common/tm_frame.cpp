@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/tm_frame.hpp"
 
+#include "common/aos_header.hpp"
 #include "common/bytes.hpp"
 #include "common/crc.hpp"
 
@@ -16,9 +17,10 @@ constexpr std::size_t transfer_crc_octets = 2;
 constexpr std::size_t header_error_control_octets = 2;
 
 /// The octets after the header, without CRC and control field; the control field is stored in `into`.
-Parsed<std::span<const std::uint8_t>> body_of(std::span<const std::uint8_t> frame, bool crc, bool control_field,
-                                              TransferFrame& into) {
-    if (crc && crc16(frame) != 0) return Malformed::bad_checksum;
+/// @param header  the frame's first octets, as corrected
+Parsed<std::span<const std::uint8_t>> body_of(std::span<const std::uint8_t> frame, std::span<const std::uint8_t> header,
+                                              bool crc, bool control_field, TransferFrame& into) {
+    if (crc && crc16(frame.subspan(header.size()), crc16(header)) != 0) return Malformed::bad_checksum;
     const std::size_t after = (crc ? transfer_crc_octets : 0) + (control_field ? control_field_octets : 0);
     if (frame.size() <= transfer_header_octets + after) return Malformed::too_short;
     const auto body = frame.subspan(transfer_header_octets, frame.size() - transfer_header_octets - after);
@@ -65,31 +67,37 @@ Parsed<TransferFrame> read_tm_frame(std::span<const std::uint8_t> octets, const 
     reader.get(8);
     frame.count = static_cast<std::uint32_t>(reader.get(8));
     const bool secondary_header = reader.get(1) != 0;
-    const bool no_packets = reader.get(1) != 0;
+    frame.packets = reader.get(1) == 0;
     reader.get(3);
     frame.first_header_pointer = static_cast<std::uint16_t>(reader.get(11));
-    const auto body = body_of(octets, agreed.crc, control_field, frame);
+    const auto body = body_of(octets, {}, agreed.crc, control_field, frame);
     if (!body) return body.why();
-    if (no_packets) return Malformed::bad_field;
     // The first octet of the secondary header gives the number of octets after it, in six bits.
     const std::size_t skipped = secondary_header ? ((*body)[0] & 0x3FU) + std::size_t{1} : 0;
     if (skipped >= body->size()) return Malformed::bad_field;
     frame.data = body->subspan(skipped);
-    if (const Malformed why = check_pointer(frame); why != Malformed::none) return why;
+    if (const Malformed why = check_pointer(frame); frame.packets && why != Malformed::none) return why;
     return frame;
 }
 
 Parsed<TransferFrame> read_aos_frame(std::span<const std::uint8_t> octets, const FrameAgreement& agreed) {
     if (const Malformed why = check_size(octets); why != Malformed::none) return why;
-    BitReader reader{octets};
-    if (reader.get(2) != 1) return Malformed::other_version;
+    AosHeader header{};
+    std::copy_n(octets.begin(), header.size(), header.begin());
     TransferFrame frame;
+    if (agreed.header_error_control) {
+        const auto corrected = correct_aos_header(header);
+        if (!corrected) return Malformed::bad_field;
+        frame.corrected_symbols = *corrected;
+    }
+    BitReader reader{header};
+    if (reader.get(2) != 1) return Malformed::other_version;
     frame.spacecraft = static_cast<std::uint16_t>(reader.get(8));
     frame.virtual_channel = static_cast<std::uint8_t>(reader.get(6));
     frame.count = static_cast<std::uint32_t>(reader.get(24));
     frame.count_modulus = 1U << 24;
     frame.replay = reader.get(1) != 0;
-    const auto body = body_of(octets, agreed.crc, agreed.control_field, frame);
+    const auto body = body_of(octets, header, agreed.crc, agreed.control_field, frame);
     if (!body) return body.why();
     const std::size_t before = (agreed.header_error_control ? header_error_control_octets : 0) + agreed.insert_octets;
     if (body->size() <= before + packet_zone_header_octets) return Malformed::too_short;

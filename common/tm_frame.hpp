@@ -28,7 +28,7 @@ inline constexpr std::size_t transfer_frame_octets_max = 65536;  ///< chosen; th
 struct FrameAgreement {
     bool crc = true;                    ///< frames end with a CRC-16
     bool control_field = false;         ///< AOS only: a TM frame declares it
-    bool header_error_control = false;  ///< AOS only: 2 octets at the end of the header, not used here
+    bool header_error_control = false;  ///< AOS only: 2 octets at the end of the header, by which it is corrected
     std::uint8_t insert_octets = 0;     ///< AOS only: insert zone after the header
 };
 
@@ -38,13 +38,16 @@ struct TransferFrame {
     std::uint32_t count = 0;            ///< count of the virtual channel
     std::uint32_t count_modulus = 256;  ///< 2^8 for TM, 2^24 for AOS
     bool replay = false;
+    unsigned corrected_symbols = 0;  ///< of the header, by its error control
+    bool packets = true;             ///< in `data`; false: other data, as a TM frame's synchronisation flag says
     std::uint16_t first_header_pointer = no_packet_begins;  ///< offset in `data` of the first packet that begins there
     std::span<const std::uint8_t> data;
     std::optional<std::uint32_t> control_field;  ///< usually a CLCW
 };
 
 /// Parse a whole frame.
-/// Fail with bad_field when the data are not packets (synchronised flag) or a field leaves no room for data.
+/// Fail with bad_field when a field leaves no room for data, or the header's error control finds more wrong than it
+/// corrects.
 Parsed<TransferFrame> read_tm_frame(std::span<const std::uint8_t> frame, const FrameAgreement& agreed);
 Parsed<TransferFrame> read_aos_frame(std::span<const std::uint8_t> frame, const FrameAgreement& agreed);
 

@@ -39,8 +39,12 @@ Agreement agreement_of(const FrameStream& stream, std::span<const std::uint8_t> 
         }
     }
     PacketCounters sum;
-    for (const auto& [id, channel] : channels) sum += channel.counters();
-    const auto read = sum.packets + sum.idle_packets + sum.encapsulation_packets;
+    std::uint64_t held = 0;  // no pointer contradicts them yet
+    for (const auto& [id, channel] : channels) {
+        sum += channel.counters();
+        held += channel.held_packets();
+    }
+    const auto read = sum.packets + sum.idle_packets + sum.encapsulation_packets + held;
     const auto against = sum.cut_packets + (sum.unreadable_octets > 0 ? 1 : 0);
     const auto link = receiver.counters();
     return {link.frames, link.bad_crc + link.bad_header + link.uncorrectable_frames,
@@ -242,12 +246,15 @@ Parsed<TransferFrame> FrameReceiver::read_unit() {
     if (stream_.randomised) randomise_tm(block_);
     if (stream_.code) correction_ = correct_codeblock(*stream_.code, block_);
     if (correction_.uncorrectable_words > 0 && !stream_.agreed.crc) return Malformed::bad_checksum;
-    const auto frame = std::span{block_}.first(stream_.frame_octets);
-    return stream_.kind == FrameStream::Kind::tm ? read_tm_frame(frame, stream_.agreed)
-                                                 : read_aos_frame(frame, stream_.agreed);
+    const auto octets_of_frame = std::span{block_}.first(stream_.frame_octets);
+    auto frame = stream_.kind == FrameStream::Kind::tm ? read_tm_frame(octets_of_frame, stream_.agreed)
+                                                       : read_aos_frame(octets_of_frame, stream_.agreed);
+    // Of data that are not packets no pointer shows whether octets are a frame at all.
+    if (frame && !frame->packets && !checked()) return Malformed::bad_field;
+    return frame;
 }
 
-void FrameReceiver::count_good() {
+void FrameReceiver::count_good(const TransferFrame& frame) {
     if (found_ != alignment_ && counters_.frames > 0) ++counters_.slips;
     alignment_ = found_;
     expected_ = true;
@@ -255,6 +262,8 @@ void FrameReceiver::count_good() {
     stray_.frame();
     if (correction_.symbols > 0) ++counters_.corrected_frames;
     counters_.corrected_symbols += correction_.symbols;
+    if (frame.corrected_symbols > 0) ++counters_.corrected_headers;
+    if (!frame.packets) ++counters_.other_data_frames;
 }
 
 void FrameReceiver::count_unread(Malformed why) {
@@ -279,10 +288,11 @@ std::optional<FrameReceiver::Received> FrameReceiver::next() {
             continue;
         }
         window_.use(unit_octets());
-        count_good();
+        count_good(*frame);
         if (stream_.virtual_channel && frame->virtual_channel != *stream_.virtual_channel) continue;
         const ChannelNumber channel = channel_number(*frame);
-        FrameOrder& order = orders_.at(channel, [&](const FrameOrder&) { ++counters_.forgotten_channels; });
+        FrameOrder& order =
+            orders_.at(channel, [&](ChannelNumber, const FrameOrder&) { ++counters_.forgotten_channels; });
         const auto placed = order.place(frame->count, frame->count_modulus,
                                         std::span{block_}.first(stream_.frame_octets), sequences_.of(channel));
         if (placed.place != FramePlace::repeated) return Received{*frame, placed.place};

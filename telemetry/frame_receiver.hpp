@@ -85,7 +85,7 @@ class FrameReceiver {
     bool at_unit();
     bool waits_for_octets() const;
     Parsed<TransferFrame> read_unit();
-    void count_good();
+    void count_good(const TransferFrame& frame);
     void count_unread(Malformed why);
     void skip(std::size_t octets);
 

@@ -44,6 +44,9 @@ struct LinkCounters {
     std::uint64_t restarts = 0;         ///< the sequence began anew
     std::uint64_t cut_frames = 0;       ///< the stream ended within it
     std::uint64_t slips = 0;            ///< good frames at another bit, or inverted, than the one before
+    // Not in the archive.
+    std::uint64_t other_data_frames = 0;  ///< of `frames`: whose data are not packets, as they say
+    std::uint64_t corrected_headers = 0;  ///< of `frames`: by the header's error control
     // By a Reed–Solomon code.
     std::uint64_t corrected_frames = 0;      ///< of `frames`: with symbols that were corrected
     std::uint64_t corrected_symbols = 0;     ///< in those

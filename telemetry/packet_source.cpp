@@ -58,29 +58,37 @@ bool BarePackets::end_datagram() {
 }
 
 void PacketSource::take_from(BarePackets& packets) {
-    while (const auto packet = packets.next()) keep(*packet);
+    while (const auto packet = packets.next()) keep(*packet, now_);
+}
+
+void PacketSource::keep_all(PacketExtractor& extractor, ChannelNumber channel) {
+    while (const auto packet = extractor.next()) keep(*packet, extractor.received(), channel);
 }
 
 void PacketSource::take_from(Frames& frames) {
     while (const auto received = frames.receiver.next()) {
         const ChannelNumber number = channel_number(received->frame);
-        PacketExtractor& channel = frames.channels.at(number, [&](PacketExtractor& forgotten) {
-            forgotten.end();
-            frames.forgotten += forgotten.counters();
-        });
-        channel.add(received->frame, received->place);
-        while (const auto packet = channel.next()) keep(*packet, number);
+        PacketExtractor& channel =
+            frames.channels.at(number, [&](ChannelNumber heard_before, PacketExtractor& forgotten) {
+                forgotten.end();
+                keep_all(forgotten, heard_before);
+                frames.forgotten += forgotten.counters();
+                frames.pointers_forgotten += forgotten.pointers();
+            });
+        channel.add(received->frame, received->place, now_);
+        keep_all(channel, number);
     }
 }
 
 void PacketSource::take_from(Pltus& pltus) {
     while (const auto received = pltus.receiver.next()) {
         pltus.packets.add(*received);
-        while (const auto packet = pltus.packets.next()) keep(*packet);
+        while (const auto packet = pltus.packets.next()) keep(*packet, now_);
     }
 }
 
-void PacketSource::receive(std::span<const std::uint8_t> octets) {
+void PacketSource::receive(std::span<const std::uint8_t> octets, Ert at) {
+    now_ = at;
     if (auto* packets = std::get_if<BarePackets>(&source_)) {
         packets->receive(octets);
         take_from(*packets);
@@ -93,7 +101,8 @@ void PacketSource::receive(std::span<const std::uint8_t> octets) {
     }
 }
 
-void PacketSource::end() {
+void PacketSource::end(Ert at) {
+    now_ = at;
     if (auto* packets = std::get_if<BarePackets>(&source_)) packets->end();
     if (auto* frames = std::get_if<Frames>(&source_)) frames->receiver.end();
     if (auto* pltus = std::get_if<Pltus>(&source_)) {
@@ -101,7 +110,10 @@ void PacketSource::end() {
         take_from(*pltus);
     }
     if (auto* frames = std::get_if<Frames>(&source_))
-        frames->channels.each([](ChannelNumber, PacketExtractor& channel) { channel.end(); });
+        frames->channels.each([this](ChannelNumber number, PacketExtractor& channel) {
+            channel.end();
+            keep_all(channel, number);
+        });
     segments_.end();
 }
 
@@ -111,20 +123,20 @@ bool PacketSource::end_datagram() {
     return true;
 }
 
-void PacketSource::keep(std::span<const std::uint8_t> packet, std::optional<ChannelNumber> channel) {
+void PacketSource::keep(std::span<const std::uint8_t> packet, Ert received, std::optional<ChannelNumber> channel) {
     const auto id = static_cast<std::uint16_t>(read_bits(packet, 0, 16) & ~secondary_header_flag);
-    auto& order = packet_orders_.at({channel, id}, [](const FrameOrder&) {});
+    auto& order = packet_orders_.at({channel, id}, [](const PacketKey&, const FrameOrder&) {});
     order.place(static_cast<std::uint32_t>(read_bits(packet, count_bit, count_bits)), 1U << count_bits, packet,
                 packet_ids_.of({channel, id}));
     if (const auto whole = segments_.add(packet, channel ? *channel + 1 : 0))
-        whole_.emplace_back(whole->begin(), whole->end());
+        whole_.push_back({{whole->begin(), whole->end()}, received});
 }
 
 std::optional<std::span<const std::uint8_t>> PacketSource::next() {
     if (whole_.empty()) return std::nullopt;
     given_ = std::move(whole_.front());
     whole_.pop_front();
-    return given_;
+    return given_.octets;
 }
 
 bool PacketSource::lost() const {
@@ -153,6 +165,14 @@ PacketCounters PacketSource::packets() const {
         frames->channels.each([&](ChannelNumber, const PacketExtractor& channel) { sum += channel.counters(); });
     }
     sum.lost_segments += segments_.lost_segments();
+    return sum;
+}
+
+PointerVerdicts PacketSource::pointers() const {
+    const auto* frames = std::get_if<Frames>(&source_);
+    if (frames == nullptr) return {};
+    auto sum = frames->pointers_forgotten;
+    frames->channels.each([&](ChannelNumber, const PacketExtractor& channel) { sum += channel.pointers(); });
     return sum;
 }
 

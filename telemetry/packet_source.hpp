@@ -51,19 +51,24 @@ class PacketSource {
     static PacketSource of_frames(const FrameStream& stream) { return PacketSource{Frames{FrameReceiver{stream}}}; }
     static PacketSource of_pltus() { return PacketSource{Pltus{}}; }
 
-    void receive(std::span<const std::uint8_t> octets);
+    /// @param at  when they were received
+    void receive(std::span<const std::uint8_t> octets, Ert at = {});
     /// Ends the stream; next() may then return more packets.
-    void end();
+    void end(Ert at = {});
     /// Ends a datagram, which holds whole packets, whole frames without markers, or a piece of a stream of frames with
     /// markers. False when it held anything else.
     bool end_datagram();
     /// The next packet; valid until the next call of any function.
     std::optional<std::span<const std::uint8_t>> next();
+    /// When the packet that next() returned last was whole: of frames, the reception of the frame that completed it.
+    Ert received() const { return given_.received; }
 
     /// Whether bare packets lost their boundaries, so that none can follow.
     bool lost() const;
     LinkCounters link() const;  ///< of frames; zero for bare packets
     PacketCounters packets() const;
+    /// How first header pointers bear out the packets before them; of frames.
+    PointerVerdicts pointers() const;
     /// Octets between frames or PLTUs that are not fill; zero for bare packets, which count them as unreadable.
     std::uint64_t stray_octets() const;
     /// Totals of frames by virtual channel, and of packets by virtual channel and id (APID, type and version). No
@@ -76,6 +81,7 @@ class PacketSource {
         FrameReceiver receiver;
         RecentMap<ChannelNumber, PacketExtractor> channels{channels_followed_max};
         PacketCounters forgotten{};  ///< of channels that were given up
+        PointerVerdicts pointers_forgotten{};
     };
     struct Pltus {
         PltuReceiver receiver;
@@ -87,7 +93,8 @@ class PacketSource {
     void take_from(Pltus& pltus);
     void take_from(BarePackets& packets);
     /// @param channel  of the frame; none: bare packets, PLTUs
-    void keep(std::span<const std::uint8_t> packet, std::optional<ChannelNumber> channel = {});
+    void keep(std::span<const std::uint8_t> packet, Ert received, std::optional<ChannelNumber> channel = {});
+    void keep_all(PacketExtractor& extractor, ChannelNumber channel);
 
     using PacketKey = std::pair<std::optional<ChannelNumber>, std::uint16_t>;  ///< channel; version, type and APID
 
@@ -95,8 +102,13 @@ class PacketSource {
     RecentMap<PacketKey, FrameOrder> packet_orders_{packet_ids_followed_max};
     SequenceTable<PacketKey> packet_ids_;
     SegmentAssembler segments_;
-    std::deque<std::vector<std::uint8_t>> whole_;
-    std::vector<std::uint8_t> given_;
+    struct Whole {
+        std::vector<std::uint8_t> octets;
+        Ert received;
+    };
+    std::deque<Whole> whole_;
+    Whole given_;
+    Ert now_;
 };
 
 }  // namespace aeolis::telemetry

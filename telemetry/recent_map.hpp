@@ -17,14 +17,14 @@ class RecentMap {
     RecentMap(RecentMap&&) = default;
     RecentMap& operator=(RecentMap&&) = default;
 
-    /// The value of `key`; a new one when there is none. `forget(Value&)` is called before a value is forgotten.
+    /// The value of `key`; a new one when there is none. `forget(key, value)` is called before a value is forgotten.
     template <typename Forget>
     Value& at(const Key& key, Forget forget) {
         auto found = values_.find(key);
         if (found == values_.end()) {
             if (values_.size() == most_) {
                 const auto oldest = values_.find(order_.front());
-                forget(oldest->second.value);
+                forget(oldest->first, oldest->second.value);
                 values_.erase(oldest);
                 order_.pop_front();
             }

@@ -82,7 +82,11 @@ class Printed {
     void add(std::span<const std::uint8_t> packet) {
         const auto apid = read_bits(packet, 5, 11);
         auto contents = decoder_.decode(packet);
-        if (time_) contents.time = time_->time_in(contents.values);
+        if (time_) {
+            contents.time = time_->time_in(contents.values);
+            const bool defined = time_->is_defined_in(contents.values);
+            ++(contents.time ? timed_ : defined ? other_form_ : untimed_);
+        }
         ++kinds_[{apid, contents.container}];
         if (!contents.problem.empty()) note(contents.problem);
         for (const auto& value : contents.unread) ++unread_[{value.parameter, value.line}];
@@ -108,6 +112,18 @@ class Printed {
         return unread_.empty();
     }
 
+    /// Prints in how many packets the parameter of --time is no time; true when there are none.
+    bool print_times() const {
+        if (!time_) return true;
+        const std::string wanted = "--time " + time_->name + time_->member;
+        if (other_form_ > 0)
+            fmt::print(stderr, "{}: in {} packets it is not in that form, and they have no time\n", wanted,
+                       other_form_);
+        if (timed_ + other_form_ == 0 && untimed_ > 0)
+            fmt::print(stderr, "{}: none of {} packets holds it, and they have no time\n", wanted, untimed_);
+        return other_form_ == 0 && (timed_ > 0 || untimed_ == 0);
+    }
+
   private:
     /// Counts a problem. Some texts name a place in the packet and so may all differ.
     void note(const std::string& problem) {
@@ -130,6 +146,7 @@ class Printed {
     const std::optional<telemetry::TimeSource>& time_;
     bool csv_;
     std::uint64_t index_ = 0;
+    std::uint64_t timed_ = 0, other_form_ = 0, untimed_ = 0;  ///< packets, by what --time finds in them
     std::map<std::pair<std::uint64_t, std::string>, std::uint64_t> kinds_;
     static constexpr std::size_t problems_max = 50;  ///< chosen: nobody reads more
     std::map<std::string, std::uint64_t> problems_;
@@ -154,7 +171,7 @@ void print_sequences(const telemetry::PacketSource& source) {
 }
 
 /// Prints the losses in the file; true when there are none.
-bool print_losses(const telemetry::PacketSource& source, const Printed& printed) {
+bool print_losses(const telemetry::PacketSource& source, const Printed& printed, const PacketStreamFormat& format) {
     const auto link = source.link();
     const auto packets = source.packets();
     if (link.octets > 0)
@@ -167,6 +184,11 @@ bool print_losses(const telemetry::PacketSource& source, const Printed& printed)
     if (link.slips > 0)
         fmt::print(stderr, "bits: {} frames began at another bit than the one before, or with another polarity\n",
                    link.slips);
+    if (link.other_data_frames > 0)
+        fmt::print(stderr, "data: {} frames hold data that are not packets, as their synchronisation flag says\n",
+                   link.other_data_frames);
+    if (link.corrected_headers > 0)
+        fmt::print(stderr, "headers: {} frames corrected by their header's error control\n", link.corrected_headers);
     if (link.corrected_frames + link.uncorrectable_frames > 0)
         fmt::print(stderr, "Reed-Solomon: {} frames corrected, {} symbols; {} frames uncorrectable\n",
                    link.corrected_frames, link.corrected_symbols, link.uncorrectable_frames);
@@ -181,14 +203,16 @@ bool print_losses(const telemetry::PacketSource& source, const Printed& printed)
                    link.forgotten_channels);
     if (source.stray_octets() > 0)
         fmt::print(stderr, "skipped: {} octets that are neither good frames nor fill\n", source.stray_octets());
+    if (const auto words = pointers_contradict(format, source.pointers()); !words.empty())
+        fmt::print(stderr, "{}\n", words);
     print_sequences(source);
     for (const auto& [problem, count] : printed.problems()) fmt::print(stderr, "{} packets: {}\n", count, problem);
-    const bool all_read = printed.print_unread();
+    const bool all_read = printed.print_unread(), all_times = printed.print_times();
     return link.bad_crc + link.bad_header + link.uncorrectable_frames + link.missing_frames + link.cut_frames +
-                   packets.encapsulation_packets + packets.cut_packets + packets.lost_segments +
-                   packets.unreadable_octets + source.stray_octets() ==
+                   link.other_data_frames + packets.encapsulation_packets + packets.cut_packets +
+                   packets.lost_segments + packets.unreadable_octets + source.stray_octets() ==
                0 &&
-           printed.problems().empty() && all_read;
+           printed.problems().empty() && all_read && all_times;
 }
 
 /// How many octets from `at` on a sparse file does not store.
@@ -203,8 +227,7 @@ std::uint64_t hole_octets(const std::filesystem::path& name, std::uint64_t at) {
 
 /// Prints any mission's packets by its XTCE file; returns 0 when every octet was decoded.
 int decode(const DecodeOptions& options) {
-    if (!telemetry::downlink_format(options.format.name))
-        return failed(packet_source(options.format, {}, true).error().message, 2);
+    if (const auto checked = check_format(options.format); !checked) return failed(checked.error().message, 2);
     const auto kernels = time_kernels(options);
     if (!kernels) return failed(kernels.error().message, 2);
     const auto xtce = read_xtce(options.xtce);
@@ -255,7 +278,7 @@ int decode(const DecodeOptions& options) {
     source.end();
     take();
     printed.print_kinds();
-    const bool all_decoded = print_losses(source, printed) && in_holes == 0;
+    const bool all_decoded = print_losses(source, printed, options.format) && in_holes == 0;
     if (in_holes > 0) fmt::print(stderr, "holes: {} octets that the file does not store were passed over\n", in_holes);
     if (!stopped.empty()) return failed(options.packets.string() + ": " + stopped);
     if (const auto words = nothing_found(options.format, source.link(), source.packets(), !source.sequences().empty());

@@ -14,6 +14,8 @@
 #include "telemetry/station/foreign_station.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <fmt/format.h>
 #include <initializer_list>
 #include <memory>
@@ -106,6 +108,8 @@ class Ingest {
         const auto faults = station_.ledger().faults_since(totals);
         fmt::print("{} packets of {} octets\n", packets_, totals.counters.octets);
         if (!faults.empty()) delivery_.fault(faults);
+        if (const auto words = pointers_contradict(options_.format, totals.pointers); !words.empty())
+            delivery_.fault(words);
         if (const auto stray = station_.stray_octets(); stray > 0)
             delivery_.fault(fmt::format("{} octets skipped that are neither good frames nor fill", stray));
         if (packets_ + totals.packets.idle_packets == 0)
@@ -205,8 +209,7 @@ int ingest(const IngestOptions& options) {
                       options.files.front().string() + " holds no samples (SigMF, or WAV), and no --link is given");
     if (!section) return failed(section.error().message, 2);
     if (options.xtce.empty()) return failed("--xtce is required: the mission's XTCE file; or --link, of our own", 2);
-    if (!telemetry::downlink_format(options.format.name))
-        return failed(packet_source(options.format, {}, true).error().message, 2);
+    if (const auto checked = check_format(options.format); !checked) return failed(checked.error().message, 2);
     if (const auto checked = check_rate(options.octets, options.files); !checked)
         return failed(checked.error().message, 2);
     Ert start = EarthClock{read_clocks}.now();
@@ -222,6 +225,11 @@ int ingest(const IngestOptions& options) {
     if (!files) return failed(files.error().message, 2);
     const auto& recordings = files->recordings();
     const auto& first = options.files.front();
+    for (std::size_t i = 0; i < recordings.size(); ++i)
+        if (options.port && !recordings[i].is_capture())
+            return failed(
+                fmt::format("--udp-port: selects datagrams of a capture, and {} is none", options.files[i].string()),
+                2);
     if (files->octets() == 0) return failed(first.string() + ": no octets of a link are in it");
     telemetry::ForeignStation station{recognise_by(options.format)};
     if (const auto recognised = recognise(recordings, station); !recognised)
@@ -275,6 +283,11 @@ void add_ingest_command(CLI::App& program, int& exit_code) {
         "of a plain file: when its first octet was received, UTC; if left out, now, or of our own mission the first "
         "packet's own time. Of samples: the first one, as the file says if left out");
     command.add_option("--pace", options->pace, "seconds of reception a second; 0: as fast as it goes")
+        ->check(CLI::Validator{[](std::string& text) {
+                                   return std::isfinite(std::strtod(text.c_str(), nullptr)) ? std::string{}
+                                                                                            : "not a number: " + text;
+                               },
+                               ""})
         ->check(CLI::Range(0.0, 1.0e6))
         ->capture_default_str();
     options->command = &command;

@@ -112,8 +112,7 @@ FollowedMission followed_mission(const ServeOptions& options) {
     const auto refused = [](int exit_code) { return FollowedMission{.exit_code = exit_code, .model = {}, .link = {}}; };
     auto address = DownlinkAddress::parse(*options.downlink);
     if (!address) return refused(failed("--downlink " + address.error().message, 2));
-    if (!telemetry::downlink_format(options.format.name))
-        return refused(failed(packet_source(options.format, {}, true).error().message, 2));
+    if (const auto checked = check_format(options.format); !checked) return refused(failed(checked.error().message, 2));
     auto xtce = read_xtce(options.xtce);
     if (!xtce) return refused(xtce.exit_code);
     FollowedMission mission;

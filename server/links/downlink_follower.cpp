@@ -143,7 +143,7 @@ void DownlinkFollower::deliver(telemetry::Received& received, Ert ert) {
         wait_ = settings_.retry_first;
         rhythm_.heard(ert);
         // Before the packets: what comes with them is then known to come over a link that is up.
-        if (!up_) say({telemetry::downlink_link, ert, true, "packets come"});
+        if (!up_) say({telemetry::downlink_link, received.packets.front().ert, true, "packets come"});
     }
     Delivery delivery;
     delivery.add(std::move(received));
@@ -176,6 +176,8 @@ void DownlinkFollower::tell_totals(Ert now, bool last) {
     if (const auto faults = due ? station_.ledger().faults_since(totals) : std::string{}; !faults.empty()) {
         faults_logged_ = now;
         spdlog::warn("downlink {}: {}", settings_.address.text(), faults);
+        if (const auto words = pointers_contradict(settings_.format, totals.pointers); !words.empty())
+            spdlog::warn("downlink {}: {}", settings_.address.text(), words);
     }
     if (!station_.ledger().changed(totals)) return;
     Delivery delivery;

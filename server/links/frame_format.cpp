@@ -4,7 +4,10 @@
 #include "common/crc.hpp"
 #include "common/randomiser.hpp"
 
+#include <algorithm>
+#include <cstdlib>
 #include <fmt/format.h>
+#include <numeric>
 #include <vector>
 
 namespace aeolis::server {
@@ -57,9 +60,37 @@ Result<void> check_code(const PacketStreamFormat& format) {
                              *format.frame_octets, *format.interleave, code.data_octets_max(), *format.interleave)};
 }
 
+/// Options about properties that only AOS frames have, as given.
+std::string aos_options(const PacketStreamFormat& format) {
+    std::string given;
+    if (format.agreed.control_field) given += ", --control-field";
+    if (format.agreed.header_error_control) given += ", --header-error-control";
+    if (format.agreed.insert_octets > 0) given += ", --insert-octets";
+    return given;
+}
+
+/// Options about frames of any kind, as given.
+std::string frame_options(const PacketStreamFormat& format) {
+    std::string given;
+    if (format.frame_octets) given += ", --frame-octets";
+    if (format.check_octets) given += ", --check-symbols";
+    if (format.coded) given += ", --reed-solomon";
+    if (format.randomised) given += ", --randomised";
+    if (format.crc) given += ", --fecf";
+    if (format.virtual_channel) given += ", --virtual-channel";
+    return given + aos_options(format);
+}
+
+Error refusal_of(const std::string& given, const std::string& why) {
+    return Error{given.substr(2) + ": " + why};
+}
+
 Result<telemetry::FrameStream> cadu_stream(const PacketStreamFormat& format, std::span<const std::uint8_t> beginning,
                                            bool ended) {
     const auto found = telemetry::recognise_cadus(beginning, hints_of(format), ended);
+    const bool is_tm = found && found->kind == telemetry::FrameStream::Kind::tm;
+    if (const auto given = aos_options(format); is_tm && !given.empty())
+        return refusal_of(given, "of AOS frames only, and these are TM frames");
     if (found) return *found;
     if (!telemetry::find_marker(beginning, 0))
         return Error{"no sync marker 1ACFFC1D, at any bit, inverted or not: these are no CADUs"};
@@ -141,12 +172,24 @@ std::string words_of(const telemetry::FrameStream& stream) {
 
 }  // namespace
 
+Result<void> check_format(const PacketStreamFormat& format) {
+    const auto kind = telemetry::downlink_format(format.name);
+    if (!kind) return Error{"there is no format '" + format.name + "': packets, tm, aos, cadu or pltu"};
+    if (format.skip > 0 && (*kind == DownlinkFormat::cadu || *kind == DownlinkFormat::pltu))
+        return refusal_of(", --skip", "of --format packets, tm and aos only: others begin at a marker");
+    const bool frames = *kind != DownlinkFormat::packets && *kind != DownlinkFormat::pltu;
+    if (const auto given = frame_options(format); !frames && !given.empty())
+        return refusal_of(given, "of --format tm, aos and cadu only, and this is --format " + format.name);
+    if (const auto given = aos_options(format); *kind == DownlinkFormat::tm && !given.empty())
+        return refusal_of(given, "of AOS frames only, and this is --format tm");
+    return check_code(format);
+}
+
 Result<telemetry::RecognisedSource> packet_source(const PacketStreamFormat& format,
                                                   std::span<const std::uint8_t> beginning, bool ended) {
     using telemetry::PacketSource, telemetry::RecognisedSource;
+    if (const auto checked = check_format(format); !checked) return checked.error();
     const auto kind = telemetry::downlink_format(format.name);
-    if (!kind) return Error{"there is no format '" + format.name + "': packets, tm, aos, cadu or pltu"};
-    if (const auto checked = check_code(format); !checked) return checked.error();
     if (*kind == DownlinkFormat::packets) return RecognisedSource{PacketSource::of_packets(format.skip), {}};
     if (*kind == DownlinkFormat::pltu) return RecognisedSource{PacketSource::of_pltus(), {}};
     const auto frames = *kind == DownlinkFormat::cadu ? cadu_stream(format, beginning, ended)
@@ -165,9 +208,34 @@ std::string nothing_found(const PacketStreamFormat& format, const telemetry::Lin
                           const telemetry::PacketCounters& packets, bool counted) {
     if (link.frames > 0 && format.virtual_channel && !counted)
         return fmt::format("no frame is of virtual channel {}: look at --virtual-channel", *format.virtual_channel);
+    if (link.frames == 0 && link.bad_header > 0 && format.agreed.header_error_control)
+        return fmt::format("no header is right by its error control: look at --header-error-control and --format {}",
+                           format.name);
     if (link.frames + packets.packets + packets.idle_packets + packets.encapsulation_packets > 0) return {};
     return fmt::format("nothing that is {} was found: look at --format {}, and whether this is the right file",
                        format.name == "packets" ? "a packet" : "a frame", format.name);
+}
+
+std::string pointers_contradict(const PacketStreamFormat& format, const telemetry::PointerVerdicts& pointers) {
+    constexpr std::uint64_t often = 3;  // chosen: a damaged frame or two tell nothing of the options
+    if (pointers.contradicted < often || pointers.contradicted <= pointers.agreed) return {};
+    constexpr int control_field_octets = 4, crc_octets = 2;
+    const auto most = std::ranges::max_element(pointers.shifts);
+    const auto shifted = std::accumulate(pointers.shifts.begin(), pointers.shifts.end(), std::uint64_t{0});
+    const int shift =
+        2 * *most > shifted
+            ? std::abs(static_cast<int>(most - pointers.shifts.begin()) - telemetry::PointerVerdicts::shift_max)
+            : 0;
+    const bool aos = format.name != "tm";
+    std::string options = aos ? "--control-field, --fecf, --insert-octets and --header-error-control"
+                              : "--fecf, --check-symbols and --frame-octets";
+    if (shift == crc_octets) options = "--fecf";
+    if (shift == control_field_octets && aos) options = "--control-field";
+    if (shift == control_field_octets + crc_octets && aos) options = "--control-field and --fecf";
+    return fmt::format(
+        "{} first header pointers contradict the packets before them, {} agree: the frames' data are not "
+        "where they are looked for; look at {}",
+        pointers.contradicted, pointers.agreed, options);
 }
 
 bool needs_beginning(const PacketStreamFormat& format) {

@@ -26,8 +26,11 @@ struct PacketStreamFormat {
     std::optional<std::uint8_t> virtual_channel{};
 };
 
-/// Makes the packet source for a stream, from its format and its first octets. Fails on an unknown format, or when
-/// `beginning` does not reveal the layout of frames.
+/// Refuses a format that there is not, and options that the format does not use or that contradict each other, by name.
+Result<void> check_format(const PacketStreamFormat& format);
+
+/// Makes the packet source for a stream, from its format and its first octets. Fails on an unknown format, on what
+/// check_format() refuses, or when `beginning` does not reveal the layout of frames.
 /// @param ended  no more octets come
 Result<telemetry::RecognisedSource> packet_source(const PacketStreamFormat& format,
                                                   std::span<const std::uint8_t> beginning, bool ended);
@@ -38,6 +41,10 @@ telemetry::ForeignStation::Recognise recognise_by(const PacketStreamFormat& form
 /// @param counted  frames or packets with a count were found
 std::string nothing_found(const PacketStreamFormat& format, const telemetry::LinkCounters& link,
                           const telemetry::PacketCounters& packets, bool counted);
+
+/// Advice on options when the first header pointers of frames contradict the packets before them again and again; empty:
+/// they do not.
+std::string pointers_contradict(const PacketStreamFormat& format, const telemetry::PointerVerdicts& pointers);
 
 /// Whether packet_source() uses the beginning at all.
 bool needs_beginning(const PacketStreamFormat& format);

@@ -23,18 +23,17 @@ Received& ForeignStation::receive(Downlink downlink) {
 void ForeignStation::receive(const ReceivedOctets& piece) {
     ledger_.received(piece.ert, piece.octets.size());
     if (source_)
-        read(piece.octets, piece.datagram);
+        read(piece.octets, piece.ert, piece.datagram);
     else
         begin(piece);
-    take_packets(piece.ert);
 }
 
 Received& ForeignStation::end(Ert now) {
     received_.clear();
     if (!source_ && !beginning_.empty()) read_beginning(true);
     if (source_) {
-        source_->end();
-        take_packets(now);
+        source_->end(now);
+        take_packets();
         stray_octets_ += source_->stray_octets();
         ledger_.end(*source_);
         source_.reset();
@@ -44,8 +43,8 @@ Received& ForeignStation::end(Ert now) {
 
 void ForeignStation::begin(const ReceivedOctets& piece) {
     beginning_.insert(beginning_.end(), piece.octets.begin(), piece.octets.end());
-    if (piece.datagram || pieces_.empty() || pieces_.back().datagram)
-        pieces_.push_back({piece.octets.size(), piece.datagram});
+    if (piece.datagram || pieces_.empty() || pieces_.back().datagram || pieces_.back().ert != piece.ert)
+        pieces_.push_back({piece.octets.size(), piece.ert, piece.datagram});
     else
         pieces_.back().octets += piece.octets.size();
     const bool full = beginning_.size() >= beginning_octets_max;
@@ -60,7 +59,7 @@ void ForeignStation::read_beginning(bool ended) {
     if (recognised) {
         auto rest = std::span<const std::uint8_t>{beginning_};
         for (const Piece& piece : pieces_) {
-            read(rest.first(piece.octets), piece.datagram);
+            read(rest.first(piece.octets), piece.ert, piece.datagram);
             rest = rest.subspan(piece.octets);
         }
     } else if (ended) {
@@ -74,17 +73,15 @@ void ForeignStation::read_beginning(bool ended) {
     }
 }
 
-void ForeignStation::read(std::span<const std::uint8_t> octets, bool datagram) {
-    source_->receive(octets);
+void ForeignStation::read(std::span<const std::uint8_t> octets, Ert ert, bool datagram) {
+    source_->receive(octets, ert);
     if (datagram && !source_->end_datagram()) ledger_.bad_datagram();
+    take_packets();
 }
 
-void ForeignStation::take_packets(Ert ert) {
-    while (source_) {
-        const auto packet = source_->next();
-        if (!packet) return;
-        received_.packets.push_back({downlink_link, ert, {packet->begin(), packet->end()}, {}});
-    }
+void ForeignStation::take_packets() {
+    while (const auto packet = source_->next())
+        received_.packets.push_back({downlink_link, source_->received(), {packet->begin(), packet->end()}, {}});
 }
 
 }  // namespace aeolis::telemetry

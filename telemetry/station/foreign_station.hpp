@@ -27,7 +27,8 @@ struct RecognisedSource {
 /// Receives the link of another mission: finds the packets in its octets, in the same way for a line and a recording.
 ///
 /// In       the port's deliveries, octets in pieces of any size; where a stream ends
-/// Out      octets and packets in the order of reception; totals of the link over all its streams
+/// Out      octets and packets in the order of reception, packets with the time at which what completed them was
+///          received; totals of the link over all its streams
 /// Layout   recognised by the first octets of each stream; tried again whenever these have doubled
 /// Datagrams  each holds whole packets, whole frames, or a piece of a stream, as the format has it
 /// Memory   a frame or a packet, and the beginning of a stream until its layout is recognised
@@ -69,19 +70,20 @@ class ForeignStation {
   private:
     struct Piece {
         std::size_t octets = 0;
+        Ert ert;
         bool datagram = false;
     };
     void receive(const ReceivedOctets& piece);
     /// Adds the piece to the beginning.
     void begin(const ReceivedOctets& piece);
     void read_beginning(bool ended);
-    void read(std::span<const std::uint8_t> octets, bool datagram);
-    void take_packets(Ert ert);
+    void read(std::span<const std::uint8_t> octets, Ert ert, bool datagram);
+    void take_packets();
 
     Recognise recognise_;
     std::optional<PacketSource> source_;   ///< of this stream; none: its layout is not recognised yet
     std::vector<std::uint8_t> beginning_;  ///< of a stream without a source
-    std::vector<Piece> pieces_;            ///< of the beginning: a datagram each, or a stretch of the stream
+    std::vector<Piece> pieces_;  ///< of the beginning: a datagram each, or a stretch of the stream that came at once
     std::size_t tried_octets_ = 0;
     std::string layout_;
     std::optional<Unread> unread_;

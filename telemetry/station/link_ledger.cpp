@@ -32,6 +32,7 @@ void LinkLedger::received(Ert ert, std::size_t octets) {
 void LinkLedger::end(const PacketSource& source) {
     ended_ += source.link();
     ended_packets_ += source.packets();
+    ended_pointers_ += source.pointers();
     for (const auto& sequence : source.sequences())
         sequences_[row_of({sequence.packets, sequence.name})].ended += sequence.counters;
 }
@@ -46,11 +47,12 @@ LinkLedger::Key LinkLedger::row_of(Key name) {
 }
 
 LinkTotals LinkLedger::totals(const PacketSource* source, Ert now) {
-    LinkTotals totals{link_, ended_, rate_.per_second(now), ended_packets_, bad_datagrams_, {}};
+    LinkTotals totals{link_, ended_, rate_.per_second(now), ended_packets_, bad_datagrams_, {}, ended_pointers_};
     std::map<Key, SequenceCounters> of_source;
     if (source != nullptr) {
         totals.counters += source->link();
         totals.packets += source->packets();
+        totals.pointers += source->pointers();
         for (const auto& each : source->sequences()) {
             const auto row = row_of({each.packets, each.name});
             sequences_.try_emplace(row);
@@ -83,7 +85,7 @@ bool LinkLedger::heard_sequences() const {
 std::string LinkLedger::faults_since(const LinkTotals& totals) {
     const auto& link = totals.counters;
     const auto& packets = totals.packets;
-    const std::array<std::pair<std::string_view, std::uint64_t>, 13> faults{
+    const std::array<std::pair<std::string_view, std::uint64_t>, 14> faults{
         {{"frames with a wrong CRC", link.bad_crc},
          {"frames with a wrong header", link.bad_header},
          {"frames that Reed-Solomon could not correct", link.uncorrectable_frames},
@@ -92,6 +94,7 @@ std::string LinkLedger::faults_since(const LinkTotals& totals) {
          {"frames late", link.late_frames},
          {"restarts of a count", link.restarts},
          {"slips of bits", link.slips},
+         {"frames whose data are not packets", link.other_data_frames},
          {"encapsulation packets not decoded", packets.encapsulation_packets},
          {"packets cut off", packets.cut_packets},
          {"segments without the rest", packets.lost_segments},

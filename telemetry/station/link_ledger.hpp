@@ -21,6 +21,7 @@ struct LinkTotals {
     PacketCounters packets{};
     std::uint64_t bad_datagrams = 0;  ///< that hold anything but whole packets
     std::vector<SequenceTotals> sequences{};
+    PointerVerdicts pointers{};  ///< of frames; not in the archive
 };
 
 /// Adds later totals of the same link.
@@ -65,6 +66,7 @@ class LinkLedger {
     std::uint64_t octets_ = 0, bad_datagrams_ = 0;
     LinkCounters ended_;
     PacketCounters ended_packets_;
+    PointerVerdicts ended_pointers_;
     std::map<Key, Sequence> sequences_;  ///< `sequences_named_max` and the others of frames and of packets
     std::optional<LinkTotals> last_;
     std::vector<std::uint64_t> logged_;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "common/crc.hpp"
 #include "common/tm_frame.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/octets.hpp"
@@ -106,11 +107,40 @@ TEST_CASE("a TM frame's secondary header and an AOS frame's insert zone are step
     CHECK(test::copy_of(aos->data) == test::hex("01020304"));
 }
 
-TEST_CASE("a frame whose fields point outside it, or that has no packets, is refused with the reason", "[common]") {
+TEST_CASE("a TM frame whose synchronisation flag is set holds data that are not packets", "[common][frames]") {
+    const auto octets = test::hex("2f60000058ff000000010203");  // its pointer says nothing
+    const auto frame = read_tm_frame(octets, {.crc = false});
+    REQUIRE(frame);
+    CHECK_FALSE(frame->packets);
+    CHECK(test::copy_of(frame->data) == test::hex("000000010203"));
+    CHECK(read_tm_frame(test::hex("2f60000018000000010203"), {.crc = false})->packets);
+}
+
+TEST_CASE("an AOS frame's header is corrected by its error control before anything of it is believed",
+          "[common][frames]") {
+    auto octets = test::hex("6ac100015700 dd07 0001 01020304 0000");
+    const std::uint16_t crc = crc16(std::span{octets}.first(octets.size() - 2));
+    octets[octets.size() - 2] = static_cast<std::uint8_t>(crc >> 8);
+    octets.back() = static_cast<std::uint8_t>(crc & 0xFF);
+    const FrameAgreement agreed{.header_error_control = true};
+    REQUIRE(read_aos_frame(octets, agreed));
+    CHECK(read_aos_frame(octets, agreed)->corrected_symbols == 0);
+    auto wrong = octets;
+    wrong[1] ^= 0x06;  // virtual channel
+    CHECK(read_aos_frame(wrong, {}).why() == Malformed::bad_checksum);
+    const auto corrected = read_aos_frame(wrong, agreed);
+    REQUIRE(corrected);
+    CHECK(corrected->virtual_channel == 1);
+    CHECK(corrected->spacecraft == 171);
+    CHECK(corrected->corrected_symbols == 1);
+    wrong[0] ^= 0x11;
+    CHECK(read_aos_frame(wrong, agreed).why() == Malformed::bad_field);
+}
+
+TEST_CASE("a frame whose fields point outside it is refused with the reason", "[common]") {
     CHECK(read_tm_frame(test::hex("2f60000018"), {}).why() == Malformed::too_short);
     CHECK(read_tm_frame(test::hex("2f60000018ff010203"), {.crc = false}).why() == Malformed::bad_field);
     CHECK(read_tm_frame(test::hex("2f60000098003f010203"), {.crc = false}).why() == Malformed::bad_field);
-    CHECK(read_tm_frame(test::hex("2f60000058000000010203"), {.crc = false}).why() == Malformed::bad_field);
     CHECK(read_tm_frame(test::hex("2f61000018000102 03"), {.crc = false}).why() == Malformed::too_short);
     CHECK(read_aos_frame(test::hex("6ac100015700 0004 01020304"), {.crc = false}).why() == Malformed::bad_field);
     CHECK(read_aos_frame(test::hex("6ac100015700 0004 01"), {.crc = false, .insert_octets = 9}).why() ==

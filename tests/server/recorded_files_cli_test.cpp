@@ -144,6 +144,12 @@ TEST_CASE("decode ends with 1 and says what it left, and asks where the file lea
           Case{one + " --format pltu --packets " + text, 1, "nothing that is a frame was found: look at --format pltu"},
           Case{one + " --format cadu --frame-octets 20 --packets " + text, 2, "no sync marker 1ACFFC1D"},
           Case{one + " --packets " + text, 1, "nothing that is a packet was found: look at --format packets"},
+          Case{one + " --time W:milliseconds --packets " + right, 0, "0,291,0,0.007,"},
+          Case{one + " --time W:cuc --packets " + right, 1, "--time W: in 1 packets it is not in that form"},
+          Case{one + " --fecf yes --virtual-channel 3 --packets " + right, 2,
+               "--fecf, --virtual-channel: of --format tm, aos and cadu only, and this is --format packets"},
+          Case{one + " --format pltu --skip 4 --packets " + right, 2, "--skip: of --format packets, tm and aos only"},
+          Case{one + " --format tm --insert-octets 2 --packets " + right, 2, "--insert-octets: of AOS frames only"},
           Case{two + " --packets " + right, 2, "say with which one packets begin: /T/P, /T/Q"},
           Case{two + " --root Q --packets " + right, 0, ",W=7|7"},
           Case{two + " --root R --packets " + right, 2, "no packet begins with a container 'R'"}}) {

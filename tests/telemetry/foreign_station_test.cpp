@@ -116,6 +116,34 @@ TEST_CASE("another mission's link gives the same packets and counts as a recordi
     }
 }
 
+TEST_CASE("each packet has the reception time of the frame that completed it, also before the layout is known",
+          "[station][downlink][frames][R55]") {
+    std::vector<Octets> packets;
+    for (std::uint16_t i = 0; i < 20; ++i) packets.push_back(packet_of(i));
+    const auto stream = cadus_of(packets);
+    constexpr std::size_t cadu_octets = frame_octets + 4;
+    for (const bool ahead : {false, true})
+        for (const bool datagrams : {false, true}) {
+            CAPTURE(ahead, datagrams);
+            ForeignStation station{cadus()};
+            if (ahead) REQUIRE(station.recognise(stream, true));
+            std::vector<std::int64_t> times;
+            const auto take = [&](const Received& received) {
+                for (const auto& packet : received.packets) times.push_back(packet.ert.microseconds);
+            };
+            for (std::size_t i = 0; i < packets.size(); ++i) {
+                Downlink downlink;
+                const auto cadu = std::span{stream}.subspan(i * cadu_octets, cadu_octets);
+                downlink.octets.push_back(
+                    {downlink_link, Ert{static_cast<std::int64_t>(100 * i)}, test::copy_of(cadu), datagrams});
+                take(station.receive(std::move(downlink)));
+            }
+            take(station.end(Ert{1'000'000}));
+            REQUIRE(times.size() == packets.size());
+            for (std::size_t i = 0; i < times.size(); ++i) CHECK(times[i] == static_cast<std::int64_t>(100 * i));
+        }
+}
+
 TEST_CASE("each datagram of another mission stands for itself, before its layout is known as well",
           "[station][downlink][R54]") {
     const std::vector<Octets> packets{packet_of(1, 30), packet_of(2, 40), packet_of(3, 50)};

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "common/crc.hpp"
 #include "common/randomiser.hpp"
 #include "telemetry/frame_receiver.hpp"
 #include "tests/support/catch.hpp"
@@ -136,7 +137,7 @@ TEST_CASE("a chance CRC is not taken for a frame, and a stream that goes on is b
     }
 }
 
-TEST_CASE("an insert zone, a control field and a header's error control are skipped where they are agreed",
+TEST_CASE("an insert zone, a control field and a header's error control are stepped over where they are agreed",
           "[telemetry][R55]") {
     const Octets data = test::hex("00112233445566778899aabb");
     for (const bool control_field : {false, true})
@@ -145,7 +146,7 @@ TEST_CASE("an insert zone, a control field and a header's error control are skip
                 CAPTURE(control_field, insert, error_control);
                 Octets octets(6);
                 octets[0] = 0x40;
-                if (error_control) append(octets, test::hex("dead"));
+                if (error_control) append(octets, test::hex("1cc1"));
                 append(octets, Octets(insert, 0xEE));
                 append(octets, test::hex("0003"));  // the pointer
                 append(octets, data);
@@ -159,6 +160,61 @@ TEST_CASE("an insert zone, a control field and a header's error control are skip
                 CHECK(test::copy_of(frame->data) == data);
                 CHECK(frame->control_field.has_value() == control_field);
             }
+}
+
+TEST_CASE(
+    "frames whose data are not packets are good ones, and counted by that name, if a CRC says that they are frames",
+    "[telemetry][frames][R55]") {
+    std::mt19937 random{21};
+    Octets stream;
+    for (unsigned i = 0; i < 13; ++i) {
+        Octets octets = frame_octets(FrameStream::Kind::tm, i, random);
+        octets[4] |= 0x40U;
+        const auto crc = crc16(std::span{octets}.first(length - 2));
+        octets[length - 2] = static_cast<std::uint8_t>(crc >> 8);
+        octets[length - 1] = static_cast<std::uint8_t>(crc & 0xFF);
+        append(stream, octets);
+    }
+    FrameStream layout{.frame_octets = length, .marker = false};
+    FrameReceiver receiver{layout};
+    CHECK(frames_in(receiver, stream, random) == 13);
+    CHECK(receiver.counters().frames == 13);
+    CHECK(receiver.counters().other_data_frames == 13);
+    CHECK(receiver.counters().bad_header == 0);
+    CHECK(receiver.counters().skipped_octets == 0);
+    layout.agreed.crc = false;
+    FrameReceiver without{layout};
+    CHECK(frames_in(without, stream, random) == 0);
+    CHECK(without.counters().bad_header == 13);
+}
+
+TEST_CASE("AOS headers are corrected by their error control, counted, and no channel is made of a damaged one",
+          "[telemetry][frames][R55]") {
+    std::mt19937 random{22};
+    for (const bool crc : {true, false}) {
+        CAPTURE(crc);
+        Octets stream;
+        for (unsigned i = 0; i < 60; ++i) {
+            Octets octets = test::hex("5345000000 40ba72 07ff");  // spacecraft 77, virtual channel 5
+            octets[4] = static_cast<std::uint8_t>(i);
+            append(octets, test::random_octets(random, length - octets.size() - 2));
+            const auto word = crc16(octets);
+            append(octets, Octets{static_cast<std::uint8_t>(word >> 8), static_cast<std::uint8_t>(word & 0xFF)});
+            if (i % 10 == 3) octets[1] ^= 0x02U;  // virtual channel
+            if (i % 10 == 5) octets[0] ^= 0x11U;  // spacecraft: two symbols
+            if (i % 10 == 7) octets[0] ^= 0x11U, octets[1] ^= 0x11U;
+            append(stream, octets);
+        }
+        FrameReceiver receiver{{.kind = FrameStream::Kind::aos,
+                                .frame_octets = length,
+                                .marker = false,
+                                .agreed = {.crc = crc, .header_error_control = true}}};
+        CHECK(frames_in(receiver, stream, random) == 54);
+        CHECK(receiver.counters().corrected_headers == 12);
+        CHECK(receiver.counters().bad_header == 6);
+        REQUIRE(receiver.sequences().size() == 1);
+        CHECK(receiver.sequences()[0].name == "spacecraft 77, virtual channel 5");
+    }
 }
 
 TEST_CASE("repeated frames are counted and not given out, and frames of another virtual channel when one is asked for",

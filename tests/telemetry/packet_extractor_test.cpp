@@ -77,6 +77,8 @@ TEST_CASE("packets come whole out of frames of any length, also much shorter tha
             extractor.add(frame_of(stream, i), FramePlace::next);
             for (auto& packet : all(extractor)) found.push_back(std::move(packet));
         }
+        extractor.end();
+        for (auto& packet : all(extractor)) found.push_back(std::move(packet));
         CHECK(found == stream.packets);
         CHECK(extractor.counters() == PacketCounters{.packets = stream.packets.size()});
     }
@@ -104,6 +106,84 @@ TEST_CASE("a missing frame costs the packets that it carries a part of, and no o
     }
 }
 
+TEST_CASE("where a control field or a CRC is taken for data, no packet is made of it, whatever the packets' sizes are",
+          "[telemetry][frames][R55]") {
+    std::mt19937 random{11};
+    for (const std::size_t trailer : {2U, 4U, 6U})
+        for (const std::size_t zone : {60U, 100U, 241U}) {
+            CAPTURE(trailer, zone);
+            const Stream stream = stream_of(random, 2000, zone);
+            const std::set<Octets> sent(stream.packets.begin(), stream.packets.end());
+            PacketExtractor extractor;
+            std::size_t found = 0, invented = 0;
+            const auto take = [&] {
+                for (const auto& packet : all(extractor)) {
+                    ++found;
+                    invented += sent.contains(packet) ? 0 : 1;
+                }
+            };
+            for (std::size_t i = 0; i < stream.zones.size(); ++i) {
+                auto frame = frame_of(stream, i);
+                Octets data = stream.zones[i];
+                for (std::size_t octet = 2; octet < trailer + 2; ++octet)
+                    data.push_back(static_cast<std::uint8_t>(octet));
+                frame.data = data;
+                extractor.add(frame, i % 50 == 49 ? FramePlace::after_gap : FramePlace::next);
+                take();
+            }
+            extractor.end();
+            take();
+            CHECK(invented == 0);
+            CHECK((found > 0 || zone == 60));
+            CHECK(extractor.pointers().agreed == 0);
+            CHECK(extractor.pointers().contradicted > 100);
+            // Most are of packets that lie over one edge.
+            const auto& shifts = extractor.pointers().shifts;
+            if (zone == 241)
+                CHECK(std::ranges::max_element(shifts) - shifts.begin() ==
+                      static_cast<std::ptrdiff_t>(PointerVerdicts::shift_max + trailer));
+        }
+}
+
+TEST_CASE("a packet that ends with its frame waits for the next frame's pointer, until eight have agreed",
+          "[telemetry][frames][R55]") {
+    PacketExtractor extractor;
+    std::vector<Octets> packets;
+    const auto add = [&](std::uint16_t pointer = 0, FramePlace place = FramePlace::next) {
+        packets.push_back(packet_of(30, static_cast<std::uint16_t>(packets.size())));
+        TransferFrame frame;
+        frame.first_header_pointer = pointer;
+        frame.data = packets.back();
+        extractor.add(frame, place, Ert{static_cast<std::int64_t>(packets.size())});
+        std::vector<std::pair<Octets, std::int64_t>> given;
+        while (const auto packet = extractor.next())
+            given.emplace_back(test::copy_of(*packet), extractor.received().microseconds);
+        return given;
+    };
+    using Given = std::vector<std::pair<Octets, std::int64_t>>;
+    const auto gives = [&](const std::vector<std::size_t>& numbers, FramePlace place = FramePlace::next) {
+        const Given given = add(0, place);
+        Given expected;
+        for (const std::size_t number : numbers)
+            expected.emplace_back(packets.at(number - 1), static_cast<std::int64_t>(number));
+        return given == expected;
+    };
+    CHECK(gives({}));
+    for (std::size_t i = 2; i <= PacketExtractor::agreed_enough; ++i) CHECK(gives({i - 1}));
+    CHECK(gives({8, 9}));  // eight pointers agreed
+    CHECK(gives({10}));
+    CHECK(extractor.held_packets() == 0);
+    CHECK(add(5).empty());  // where nothing begins
+    CHECK(extractor.pointers().contradicted == 1);
+    CHECK(gives({}));
+    CHECK(extractor.held_packets() == 1);
+    CHECK(gives({}, FramePlace::after_gap));  // of frames that contradicted last, nothing without proof
+    CHECK(gives({13}));
+    extractor.end();
+    CHECK(all(extractor) == std::vector<Octets>{packets.at(13)});
+    CHECK(extractor.received() == Ert{14});
+}
+
 TEST_CASE("a pointer that contradicts the packet before it ends that packet and is followed", "[telemetry]") {
     const Octets a = packet_of(100, 1), b = packet_of(10, 2);
     PacketExtractor extractor;
@@ -111,7 +191,7 @@ TEST_CASE("a pointer that contradicts the packet before it ends that packet and 
     frame.first_header_pointer = 0;
     frame.data = std::span{a}.first(50);
     extractor.add(frame, FramePlace::next);
-    Octets second(5 + b.size(), 0xEE);
+    Octets second(5 + b.size() + PacketExtractor::doubtful_octets, 0xE0);  // idle, behind b
     std::ranges::copy(b, second.begin() + 5);
     frame.first_header_pointer = 5;
     frame.data = second;
@@ -189,7 +269,10 @@ TEST_CASE("encapsulation packets between space packets are idle or counted, of o
         frame.data = octets;
         extractor.add(frame, FramePlace::next);
         const bool readable = idle + other > 0;
-        CHECK(all(extractor) == (readable ? std::vector<Octets>{a, b} : std::vector<Octets>{a}));
+        auto found = all(extractor);
+        extractor.end();
+        for (auto& packet : all(extractor)) found.push_back(std::move(packet));
+        CHECK(found == (readable ? std::vector<Octets>{a, b} : std::vector<Octets>{a}));
         CHECK(extractor.counters().idle_packets == idle);
         CHECK(extractor.counters().encapsulation_packets == other);
         CHECK((extractor.counters().unreadable_octets == 0) == readable);
@@ -209,8 +292,10 @@ TEST_CASE("frames of any content: nothing outside them is read, and it goes on w
         (void)all(extractor);
     }
     const Octets good = packet_of(10, 2);
+    Octets data = good;
+    data.resize(good.size() + PacketExtractor::doubtful_octets, 0xE0);  // idle
     TransferFrame frame;
-    frame.data = good;
+    frame.data = data;
     frame.first_header_pointer = 0;
     extractor.add(frame, FramePlace::after_gap);
     CHECK(all(extractor) == std::vector<Octets>{good});

@@ -254,18 +254,18 @@ TEST_CASE("however many channels damaged headers name, a bounded number is follo
 
 TEST_CASE("however many packet ids and channels random headers name, no total of them ever falls", "[telemetry][R54]") {
     constexpr std::size_t ids = 2000;
-    PacketSource source = PacketSource::of_frames({.frame_octets = 15, .marker = false, .agreed = {.crc = false}});
+    PacketSource source = PacketSource::of_frames({.frame_octets = 21, .marker = false, .agreed = {.crc = false}});
     const auto send = [&](std::size_t id, std::uint8_t count) {
         TransferFrame frame;
         frame.spacecraft = static_cast<std::uint16_t>(id / ids);
         frame.count = count;
         frame.first_header_pointer = 0;
-        Octets packet = test::hex("0000c0000002aabbcc");
+        Octets packet = test::hex("0000c0000002aabbcc e0e0e0e0e0e0");  // no packet of them ends with its frame
         packet[0] = static_cast<std::uint8_t>(id % ids / 256);
         packet[1] = static_cast<std::uint8_t>(id % ids % 256);
         packet[3] = count;
         frame.data = packet;
-        Octets octets(15);
+        Octets octets(21);
         write_tm_frame(frame, 0, false, octets);
         source.receive(octets);
         while (source.next()) {
