@@ -32,7 +32,11 @@ Result<Ert> start_of(const IngestTonesOptions& options, const SampleRecording& r
         if (const auto told = ert_from_text(*options.start)) return *told;
         return Error{"--start " + *options.start + ": not a UTC time, such as 2012-219T05:10:47.4"};
     }
-    if (const auto told = ert_from_text(recording.datetime)) return *told;
+    if (!recording.captures.empty()) {
+        const CaptureTime& first = recording.captures.front();
+        const double before_s = static_cast<double>(first.first_sample) / *recording.rate_hz;
+        return Ert{first.time.microseconds - std::llround(before_s * 1.0e6)};
+    }
     return EarthClock{read_clocks}.now();
 }
 
@@ -104,7 +108,13 @@ int ingest_tones(const IngestTonesOptions& options) {
     if (!run) return failed(run.error().message);
     fmt::print("run {}\n", run->value);
 
-    SampleClaims claims{rate_hz, recording->format->name(), *predict, *expected, dictionary->mfsk.symbol_s};
+    SampleClaims claims{rate_hz,
+                        recording->format->name(),
+                        *predict,
+                        *expected,
+                        dictionary->mfsk.symbol_s,
+                        recording->frequency_hz,
+                        dictionary->mfsk.carrier_hz};
     telemetry::GroundStation station{0.0};
     if (!predict->empty()) station.watch_by({*predict, entry});
     station.listen_by(
@@ -147,7 +157,8 @@ int ingest_tones(const IngestTonesOptions& options) {
     fmt::print("{} tones, {} erasures, {} estimates of the carrier, {} spectra\n", heard.tones, heard.erasures,
                heard.carrier, heard.spectra);
     if (const auto* status = station.tone_status()) heard.recording.status = *status;
-    heard.recording.symbols = heard.tones + heard.erasures;
+    heard.recording.tones = heard.tones;
+    heard.recording.erasures = heard.erasures;
     heard.recording.length_s = static_cast<double>(passed) / rate_hz;
     heard.recording.left_over_octets = reader->left_over_octets();
     bool is_fault = !recording->told.empty();

@@ -218,7 +218,7 @@ int tones_decode(const TonesDecodeOptions& options) {
     const auto take = [&] {
         for (const telemetry::ToneReception& symbol : receiver->take()) {
             print(symbol, *dictionary, options.json);
-            ++heard.symbols;
+            ++(symbol.tone ? heard.tones : heard.erasures);
         }
         for (const telemetry::CarrierReport& report : receiver->take_carrier()) {
             if (carrier.is_open()) write_carrier(carrier, report);
@@ -256,7 +256,8 @@ int tones_decode(const TonesDecodeOptions& options) {
     heard.left_over_octets = reader->left_over_octets();
     bool is_fault = !recording->told.empty();
     for (const auto& remark :
-         check_reception(heard, {rate_hz, recording->format->name(), *predict, *expected, dictionary->mfsk.symbol_s})) {
+         check_reception(heard, {rate_hz, recording->format->name(), *predict, *expected, dictionary->mfsk.symbol_s,
+                                 recording->frequency_hz, dictionary->mfsk.carrier_hz})) {
         fmt::print(stderr, "{}: {}\n", options.samples.string(), remark.text);
         is_fault = is_fault || remark.fault;
     }

@@ -9,11 +9,21 @@
 #include <tuple>
 
 namespace aeolis::server {
+namespace {
+
+constexpr double doppler_most_hz = 500e3;       // chosen
+constexpr double clock_error_most_ppm = 600.0;  // that the receiver finds
+
+}  // namespace
 
 std::vector<ReceptionRemark> check_reception(const HeardRecording& heard, const SampleClaims& claims) {
     std::vector<ReceptionRemark> remarks;
     const auto tell = [&](bool fault, std::string text) { remarks.push_back({std::move(text), fault}); };
     const telemetry::ReceiverStatus& status = heard.status;
+    if (claims.frequency_hz &&
+        std::abs(*claims.frequency_hz - claims.carrier_hz) > 0.5 * claims.rate_hz + doppler_most_hz)
+        tell(true, fmt::format("the middle of the band is {} Hz, and tones are sent at {} Hz", *claims.frequency_hz,
+                               claims.carrier_hz));
     if (status.loudest == 0.0) {
         tell(true, fmt::format("silence, {:.1f} s of it", heard.length_s));
         return remarks;
@@ -41,9 +51,10 @@ std::vector<ReceptionRemark> check_reception(const HeardRecording& heard, const 
     if (status.carrier_s == 0.0)
         tell(true, fmt::format("no carrier was heard within {:.1f} s; rate {} Hz, format {}", heard.length_s,
                                claims.rate_hz, claims.format));
-    else if (heard.symbols == 0 && heard.length_s > claims.symbol_s)
-        tell(true, fmt::format("a carrier for {:.1f} s, and no tone on it; is {} Hz its rate?", status.carrier_s,
-                               claims.rate_hz));
+    else if (heard.tones == 0 && heard.length_s > claims.symbol_s)
+        tell(true, fmt::format("a carrier for {:.1f} s, and no tone on it{}; is {} Hz its rate, to {:.0f} ppm?",
+                               status.carrier_s, heard.erasures > 0 ? fmt::format(", {} erased", heard.erasures) : "",
+                               claims.rate_hz, clock_error_most_ppm));
     else if (heard.left_over_octets > 0)
         tell(true, fmt::format("{} octets behind the last whole sample: truncated, or not {}", heard.left_over_octets,
                                claims.format));

@@ -6,6 +6,7 @@
 #include "telemetry/mfsk/tone_receiver.hpp"
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,7 @@ namespace aeolis::server {
 /// What was heard in a recording.
 struct HeardRecording {
     telemetry::ReceiverStatus status;
-    std::size_t symbols = 0;  ///< tones and erasures
+    std::size_t tones = 0, erasures = 0;
     double length_s = 0.0;
     std::uint64_t left_over_octets = 0;             ///< behind the last whole sample
     std::vector<telemetry::CarrierReport> carrier;  ///< each second's first, for the slope
@@ -30,6 +31,8 @@ struct SampleClaims {
     std::string format;
     TimeTable predict_hz, expected_hz;  ///< Doppler removed before sampling, and still in the samples
     double symbol_s = 0.0;
+    std::optional<double> frequency_hz = {};  ///< of the middle of the band
+    double carrier_hz = 0.0;                  ///< at which tones are sent
 };
 
 struct ReceptionRemark {
@@ -38,7 +41,7 @@ struct ReceptionRemark {
 };
 
 /// What is not as it should be at the end of a recording, though tones may have been decoded: silence, no carrier, a
-/// long carrier without symbols, a cut file, and whatever contradicts what is said of the samples.
+/// carrier without a tone, a cut file, and whatever contradicts what is said of the samples.
 std::vector<ReceptionRemark> check_reception(const HeardRecording& heard, const SampleClaims& claims);
 
 }  // namespace aeolis::server

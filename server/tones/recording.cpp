@@ -20,6 +20,9 @@ using google::protobuf::Value;
 
 constexpr std::uint64_t meta_octets_max = 16'000'000;  // chosen
 constexpr std::size_t chunks_max = 1000;               // of a WAV file before its samples; chosen
+constexpr double clock_error_most = 600e-6;            // that the receiver corrects
+constexpr double clock_unsure_s = 0.01;                // of a stated time; chosen
+constexpr double missing_s_max = 86'400.0;             // chosen
 
 Error error_of(const std::filesystem::path& file, const std::string& what) {
     return Error{fmt::format("{}: {}", file.string(), what)};
@@ -49,6 +52,68 @@ Result<std::uint64_t> count_in(const std::filesystem::path& file, const Struct& 
     if (!(told >= 0.0 && told < 9e15 && told == std::floor(told)))
         return error_of(file, fmt::format("{} is no count", name));
     return static_cast<std::uint64_t>(told);
+}
+
+/// A UTC time; digits beyond a microsecond are dropped.
+std::optional<Ert> time_in(std::string text) {
+    const std::size_t point = text.find('.');
+    if (point == std::string::npos) return ert_from_text(text);
+    const std::size_t end = std::min(text.find_first_not_of("0123456789", point + 1), text.size());
+    if (end > point + 7) text.erase(point + 7, end - point - 7);
+    return ert_from_text(text);
+}
+
+/// What `captures` say: where the first begins, when and at what frequency each was received.
+///
+/// @param offset  core:offset, from which samples are counted
+/// @param end     octets of the file of samples, without trailing ones
+Result<void> read_captures(const std::filesystem::path& meta, const Value& captures, std::uint64_t offset,
+                           std::uint64_t end, SampleRecording& recording) {
+    int number_of = 0;
+    std::uint64_t first = 0, before = 0;
+    const std::size_t octets_a_sample = recording.format->octets_a_sample();
+    for (const Value& each : captures.list_value().values()) {
+        ++number_of;
+        const auto refused = [&](const std::string& what) {
+            return error_of(meta, fmt::format("capture {} {}", number_of, what));
+        };
+        if (!each.has_struct_value()) return refused("is no object");
+        const Struct& capture = each.struct_value();
+        const auto header = count_in(meta, capture, "core:header_bytes");
+        if (!header) return header.error();
+        const auto counted = count_in(meta, capture, "core:sample_start");
+        if (!counted) return counted.error();
+        if (*counted < offset)
+            return refused(fmt::format("begins at sample {}, before core:offset, {}", *counted, offset));
+        const std::uint64_t start = *counted - offset;
+        const auto frequency = number(capture, "core:frequency");
+        if (!frequency && field(capture, "core:frequency") != nullptr)
+            return refused("has a core:frequency that is no number");
+        const std::string datetime = text(capture, "core:datetime");
+        const auto time = time_in(datetime);
+        if (!time && field(capture, "core:datetime") != nullptr)
+            return refused(fmt::format("has a core:datetime that is no UTC time: '{}'", datetime));
+        if (number_of == 1) {
+            recording.first_octet = *header + start * octets_a_sample;
+            recording.frequency_hz = frequency;
+            recording.datetime = datetime;
+            first = before = start;
+            if (time) recording.captures.push_back({0, *time, number_of});
+            continue;
+        }
+        if (*header > 0) return refused("has a header amid the samples; split the recording");
+        if (start < before) return refused("begins before the one before it");
+        if (start > 0 && recording.first_octet + (start - first) * octets_a_sample > end)
+            return refused(fmt::format("begins at sample {}, behind the end of {}", *counted,
+                                       recording.samples.filename().string()));
+        before = start;
+        if (time) recording.captures.push_back({start - first, *time, number_of});
+        if (frequency && recording.frequency_hz && *frequency != *recording.frequency_hz)
+            recording.told.push_back(fmt::format("{}: capture {} is at {} Hz, not at {} Hz; it is read as if it were",
+                                                 meta.string(), number_of, *frequency, *recording.frequency_hz));
+        if (!recording.frequency_hz) recording.frequency_hz = frequency;
+    }
+    return {};
 }
 
 Result<SampleRecording> look_at_sigmf(const std::filesystem::path& meta, std::filesystem::path data) {
@@ -89,33 +154,15 @@ Result<SampleRecording> look_at_sigmf(const std::filesystem::path& meta, std::fi
         return counted.error();
     else
         trailing = *counted;
-    if (const Value* captures = field(document, "captures"); captures != nullptr && captures->has_list_value()) {
-        int index = 0;
-        for (const Value& each : captures->list_value().values()) {
-            if (!each.has_struct_value()) return error_of(meta, "a capture is no object");
-            const Struct& capture = each.struct_value();
-            const auto header = count_in(meta, capture, "core:header_bytes");
-            if (!header) return header.error();
-            const auto frequency = number(capture, "core:frequency");
-            if (index++ == 0) {
-                const auto start = count_in(meta, capture, "core:sample_start");
-                if (!start) return start.error();
-                recording.first_octet = *header + *start * format->octets_a_sample();
-                recording.frequency_hz = frequency;
-                recording.datetime = text(capture, "core:datetime");
-                continue;
-            }
-            if (*header > 0)
-                return error_of(meta,
-                                fmt::format("capture {} has a header amid the samples; split the recording", index));
-            if (frequency && recording.frequency_hz && *frequency != *recording.frequency_hz)
-                recording.told.push_back(
-                    fmt::format("{}: capture {} is at {} Hz, not at {} Hz; it is read as if it were", meta.string(),
-                                index, *frequency, *recording.frequency_hz));
-        }
-    }
     const std::uint64_t octets = std::filesystem::file_size(data, ignored);
     if (ignored) return error_of(data, ignored.message());
+    const auto offset = count_in(meta, global, "core:offset");
+    if (!offset) return offset.error();
+    recording.said_by = meta;
+    if (const Value* captures = field(document, "captures"); captures != nullptr && captures->has_list_value())
+        if (const auto read = read_captures(meta, *captures, *offset, octets - std::min(octets, trailing), recording);
+            !read)
+            return read.error();
     if (octets < recording.first_octet + trailing)
         return error_of(data, fmt::format("has {} octets, fewer than its headers", octets));
     recording.octets = octets - recording.first_octet - trailing;
@@ -250,6 +297,32 @@ Result<SampleRecording> look_at_recording(const std::filesystem::path& file) {
     SampleRecording recording;
     recording.samples = file;
     return recording;
+}
+
+Result<std::vector<MissingSamples>> missing_samples(const SampleRecording& recording) {
+    std::vector<MissingSamples> missing;
+    if (!recording.rate_hz) return missing;
+    const double rate_hz = *recording.rate_hz;
+    const auto whole = [](Ert time) { return time.microseconds % 1'000'000 == 0; };
+    for (std::size_t i = 1; i < recording.captures.size(); ++i) {
+        const CaptureTime &capture = recording.captures[i], &before = recording.captures[i - 1];
+        const auto refused = [&](const std::string& what) {
+            return error_of(recording.said_by, fmt::format("capture {} {}", capture.number, what));
+        };
+        const double apart_s = static_cast<double>(capture.time.microseconds - before.time.microseconds) * 1e-6;
+        const double received_s = static_cast<double>(capture.first_sample - before.first_sample) / rate_hz;
+        const double unsure_s =
+            clock_error_most * received_s + (whole(capture.time) || whole(before.time) ? 1.0 : clock_unsure_s);
+        const double gap_s = apart_s - received_s;
+        if (gap_s < -unsure_s)
+            return refused(
+                fmt::format("is {:.3f} s earlier than the samples before it end; split the recording", -gap_s));
+        if (gap_s > missing_s_max)
+            return refused(fmt::format("is {:.0f} s after the samples before it; split the recording", gap_s));
+        if (gap_s > unsure_s)
+            missing.push_back({capture.first_sample, static_cast<std::uint64_t>(std::llround(gap_s * rate_hz))});
+    }
+    return missing;
 }
 
 std::string sigmf_meta(const SampleFormat& format, double rate_hz, double frequency_hz,

@@ -38,11 +38,24 @@ Result<SampleReader> SampleReader::open(const SampleRecording& recording) {
     reader.first_octet_ = recording.first_octet;
     reader.left_over_octets_ = octets % recording.format->octets_a_sample();
     reader.samples_ = octets / recording.format->octets_a_sample();
+    auto missing = missing_samples(recording);
+    if (!missing) return missing.error();
+    reader.missing_ = std::move(*missing);
+    for (const MissingSamples& each : reader.missing_) reader.missing_all_ += each.count;
     return reader;
 }
 
 Result<std::span<const std::complex<float>>> SampleReader::next(std::span<std::complex<float>> room) {
-    const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(room.size(), samples_ - read_));
+    if (!missing_.empty() && missing_.front().before_sample <= read_) {
+        MissingSamples& gap = missing_.front();
+        const auto zeros = room.first(static_cast<std::size_t>(std::min<std::uint64_t>(room.size(), gap.count)));
+        std::ranges::fill(zeros, std::complex<float>{});
+        gap.count -= zeros.size();
+        if (gap.count == 0) missing_.erase(missing_.begin());
+        return std::span<const std::complex<float>>{zeros};
+    }
+    const std::uint64_t end = missing_.empty() ? samples_ : std::min(samples_, missing_.front().before_sample);
+    const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(room.size(), end - read_));
     octets_.resize(count * format_.octets_a_sample());
     if (!stream_.read(octets_.data(), static_cast<std::streamsize>(octets_.size())))
         return Error{fmt::format("{} ended after {} of {} samples", file_.string(), read_, samples_)};
@@ -52,6 +65,11 @@ Result<std::span<const std::complex<float>>> SampleReader::next(std::span<std::c
 }
 
 std::uint64_t SampleReader::skip_hole() {
+    if (!missing_.empty() && missing_.front().before_sample <= read_) {
+        const std::uint64_t count = missing_.front().count;
+        missing_.erase(missing_.begin());
+        return count;
+    }
     const std::size_t octets = format_.octets_a_sample();
     const int file = ::open(file_.c_str(), O_RDONLY | O_CLOEXEC);
     if (file < 0) return 0;
@@ -60,8 +78,9 @@ std::uint64_t SampleReader::skip_hole() {
     const bool none_stored = stored < 0 && errno == ENXIO;
     ::close(file);
     if (stored < 0 && !none_stored) return 0;
-    const std::uint64_t hole = none_stored ? samples_ - read_ : (static_cast<std::uint64_t>(stored) - at) / octets;
-    const std::uint64_t skipped = std::min(hole, samples_ - read_);
+    const std::uint64_t end = missing_.empty() ? samples_ : std::min(samples_, missing_.front().before_sample);
+    const std::uint64_t hole = none_stored ? end - read_ : (static_cast<std::uint64_t>(stored) - at) / octets;
+    const std::uint64_t skipped = std::min(hole, end - read_);
     read_ += skipped;
     stream_.seekg(static_cast<std::streamoff>(first_octet_ + read_ * octets));
     return skipped;

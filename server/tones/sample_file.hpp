@@ -19,15 +19,16 @@ class SampleReader {
   public:
     /// Opens a file. Fails when it does not exist, cannot be read, or is empty.
     static Result<SampleReader> open(const std::filesystem::path& file, SampleFormat format);
-    /// Opens the samples of a recording. Its format must be known.
+    /// Opens the samples of a recording. Its format must be known. Samples that are missing between captures are zeros.
     static Result<SampleReader> open(const SampleRecording& recording);
 
     /// Reads the next samples, at most room.size(); empty at the end.
     Result<std::span<const std::complex<float>>> next(std::span<std::complex<float>> room);
-    std::uint64_t samples() const { return samples_; }
+    /// All, with those that are missing.
+    std::uint64_t samples() const { return samples_ + missing_all_; }
     /// The octets after the last whole sample: the file is truncated or of another format.
     std::uint64_t left_over_octets() const { return left_over_octets_; }
-    /// Skips a hole of a sparse file (zeros); returns the number of samples skipped.
+    /// Skips missing samples and a hole of a sparse file (zeros); returns the number of samples skipped.
     std::uint64_t skip_hole();
 
   private:
@@ -36,7 +37,9 @@ class SampleReader {
     SampleFormat format_;
     std::uint64_t left_over_octets_ = 0;
     std::uint64_t first_octet_ = 0;
-    std::uint64_t samples_ = 0, read_ = 0;
+    std::uint64_t samples_ = 0, read_ = 0;  ///< stored
+    std::vector<MissingSamples> missing_;   ///< those still to come, in order
+    std::uint64_t missing_all_ = 0;
     std::ifstream stream_;
     std::vector<char> octets_;
 };

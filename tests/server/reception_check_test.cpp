@@ -13,7 +13,7 @@ TEST_CASE("a recording in which nothing usable was heard is a fault, in one line
     HeardRecording good;
     good.status.loudest = 1.0;
     good.status.carrier_s = 40.0;
-    good.symbols = 3;
+    good.tones = 3;
     good.length_s = 45.0;
     const SampleClaims claims{8192.0, "ci16", {}, {}, 10.0};
     CHECK(check_reception(good, claims).empty());
@@ -29,17 +29,30 @@ TEST_CASE("a recording in which nothing usable was heard is a fault, in one line
     CHECK(only(silent) == "silence, 45.0 s of it");
     auto noise = good;
     noise.status.carrier_s = 0.0;
-    noise.symbols = 0;
+    noise.tones = 0;
     CHECK(only(noise) == "no carrier was heard within 45.0 s; rate 8192 Hz, format ci16");
     auto music = good;
-    music.symbols = 0;
-    CHECK(only(music) == "a carrier for 40.0 s, and no tone on it; is 8192 Hz its rate?");
+    music.tones = 0;
+    CHECK(only(music) == "a carrier for 40.0 s, and no tone on it; is 8192 Hz its rate, to 600 ppm?");
+    auto slow = music;  // by more than 600 ppm: what is found is erased
+    slow.erasures = 1;
+    CHECK(only(slow) == "a carrier for 40.0 s, and no tone on it, 1 erased; is 8192 Hz its rate, to 600 ppm?");
     auto cut = good;
     cut.left_over_octets = 3;
     CHECK(only(cut) == "3 octets behind the last whole sample: truncated, or not ci16");
     auto wrong_rate = good;
     wrong_rate.status.contradicted = 2;
     CHECK_THAT(only(wrong_rate), Catch::Contains("the rate is wrong"));
+
+    auto elsewhere = claims;
+    elsewhere.carrier_hz = 8.4e9;
+    for (const auto& [middle_hz, faults] : {std::pair{2.2e9, 1U}, {8.4e9, 0U}, {8.4e9 + 450e3, 0U}}) {
+        elsewhere.frequency_hz = middle_hz;
+        const auto told = check_reception(good, elsewhere);
+        REQUIRE(told.size() == faults);
+        if (faults > 0)
+            CHECK(told.front().text == "the middle of the band is 2200000000 Hz, and tones are sent at 8400000000 Hz");
+    }
 
     auto gap = good;
     gap.status.gap_s = 2.0;
@@ -51,7 +64,7 @@ TEST_CASE("a recording in which nothing usable was heard is a fault, in one line
 TEST_CASE("a carrier that still moves by the Doppler that was said to be removed is a fault", "[tones][R55]") {
     HeardRecording heard;
     heard.status.loudest = heard.status.carrier_s = 1.0;
-    heard.symbols = 3;
+    heard.tones = 3;
     for (int second = 0; second < 100; ++second)
         heard.add({.time_s = second * 1.0, .lock = CarrierLock::locked, .frequency_hz = 10.0 * second});
     heard.add({.time_s = 99.5, .lock = CarrierLock::locked, .frequency_hz = 1.0e6});  // one a second is kept

@@ -636,6 +636,53 @@ TEST_CASE("a fixed oscillator's Doppler is removed from SigMF samples, and optio
     CHECK_THAT(run(program(), "tones decode --samples" + path("raw.cf32")).text, Catch::Contains("give --format"));
 }
 
+TEST_CASE("tones behind a gap between two SigMF captures come out at their times, and a rate wrong by 1000 ppm is told",
+          "[cli][ingest][tones][R56]") {
+    if (program().empty()) return;
+    const aeolis::test::TemporaryFolder folder;
+    std::ofstream{folder / "tones.csv"} << "start_s,tone\n3,17\n27,200\n";
+    const auto path = [&](const char* name) { return " '" + (folder / name).string() + "'"; };
+    const auto made = run(program(), "tones simulate --tones" + path("tones.csv") +
+                                         " --c-n0 28 --length 45 --rate 8192 --out" + path("s.cf32"));
+    INFO(made.text);
+    REQUIRE(made.code == 0);
+    std::filesystem::rename(folder / "s.cf32", folder / "s.sigmf-data");
+    const auto meta = [&](const std::string& rate, const std::string& more) {
+        std::ofstream{folder / "s.sigmf-meta"}
+            << R"({"global": {"core:datatype": "cf32_le", "core:sample_rate": )" << rate
+            << R"(}, "captures": [{"core:sample_start": 0, "core:frequency": 8.4e9, "core:datetime": "2026-11-30T00:00:00Z"})"
+            << more << R"(], "annotations": []})";
+    };
+    // 20 s are stored, and then 500 s are missing.
+    meta("8192", R"(, {"core:sample_start": 163840, "core:datetime": "2026-11-30T00:08:40Z"})");
+    const auto decoded = run(program(), "tones decode --json --samples" + path("s.sigmf-meta"));
+    INFO(decoded.text);
+    CHECK(decoded.code == 0);
+    CHECK_THAT(decoded.text, Catch::Contains(R"({"start_s":3.000,"tone":17,)") &&
+                                 Catch::Contains(R"({"start_s":527.000,"tone":200,)") &&
+                                 Catch::Contains("500.0 s without usable samples"));
+    const std::string archive = "--archive" + path("passes.db");
+    const auto taken = run(program(), "ingest " + archive + path("s.sigmf-meta"));
+    INFO(taken.text);
+    CHECK(taken.code == 0);
+    CHECK_THAT(taken.text, Catch::Contains("2 tones, 0 erasures"));
+    const auto carrier = run(program(), "export " + archive + " --run 1 --channel STA-0006");
+    CHECK_THAT(carrier.text, Catch::Contains("2026-334T00:08:50") && !Catch::Contains("2026-334T00:00:30"));
+
+    meta("8192", R"(, {"core:sample_start": 163840, "core:datetime": "2026-11-30T00:00:10Z"})");
+    for (const std::string& command :
+         {"tones decode --samples" + path("s.sigmf-meta"), "ingest " + archive + path("s.sigmf-meta")}) {
+        const auto back = run(program(), command);
+        CHECK(back.code == 1);
+        CHECK_THAT(back.text, Catch::Contains("s.sigmf-meta: capture 2 is 10.000 s earlier"));
+    }
+    meta("8200", "");
+    const auto slow = run(program(), "tones decode --samples" + path("s.sigmf-meta"));
+    INFO(slow.text);
+    CHECK(slow.code == 1);
+    CHECK_THAT(slow.text, Catch::Contains("is 8200 Hz its rate, to 600 ppm?"));
+}
+
 TEST_CASE("a pass recorded elsewhere becomes a run with its tones, carrier, spectra and link, from SigMF as from WAV",
           "[cli][ingest][tones][R55]") {
     if (program().empty()) return;
@@ -682,7 +729,7 @@ TEST_CASE("a pass recorded elsewhere becomes a run with its tones, carrier, spec
          {"ingest " + archive + path("b.sigmf-meta"), "tones decode --samples" + path("b.sigmf-data")}) {
         const auto ended = run(program(), command);
         CHECK(ended.code == 1);
-        CHECK_THAT(ended.text, Catch::Contains("and no tone on it; is 8192 Hz its rate?"));
+        CHECK_THAT(ended.text, Catch::Contains("and no tone on it; is 8192 Hz its rate, to 600 ppm?"));
     }
 
     const auto silent = run(program(), "tones simulate --tones" + path("tones.csv") +

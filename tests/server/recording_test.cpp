@@ -152,6 +152,77 @@ TEST_CASE("what SigMF says of itself is used: its layout, rate, frequency, time 
     CHECK(refusal(folder / "r.sigmf-data").find("r.sigmf-meta is missing") != std::string::npos);
 }
 
+TEST_CASE("a SigMF capture with a later time comes after a gap of that length, and one that cannot be is refused",
+          "[tones][R56]") {
+    const test::TemporaryFolder folder;
+    std::string octets;
+    for (unsigned i = 1; i <= 10; ++i) octets += number(i, 2) + number(0, 2);
+    written(folder / "r.sigmf-data", octets);
+    const auto meta = [&](const std::string& captures, const std::string& global = {}) {
+        return written(folder / "r.sigmf-meta", R"({"global": {"core:datatype": "ci16_le", "core:sample_rate": 10)" +
+                                                    global + R"(}, "captures": [)" + captures +
+                                                    R"(], "annotations": []})");
+    };
+    const auto capture = [](int start, const std::string& datetime, const std::string& more = {}) {
+        return R"({"core:sample_start": )" + std::to_string(start) +
+               (datetime.empty() ? "" : R"(, "core:datetime": ")" + datetime + '"') + more + "}";
+    };
+    const auto heard = [&](const std::filesystem::path& file) {
+        const auto recording = look_at_recording(file);
+        REQUIRE(recording);
+        auto reader = SampleReader::open(*recording);
+        REQUIRE(reader);
+        std::vector<float> all;
+        std::vector<std::complex<float>> room(4);
+        for (auto block = reader->next(room); block && !block->empty(); block = reader->next(room))
+            for (const auto& sample : *block) all.push_back(sample.real());
+        CHECK(reader->samples() == all.size());
+        return all;
+    };
+    // 5 samples take half a second; the sixth came 0.8 s after the first, so that 3 are missing.
+    CHECK(heard(meta(capture(0, "2012-08-06T05:10:47.123456789Z") + "," + capture(5, "2012-08-06T05:10:47.923457Z"))) ==
+          std::vector<float>{1, 2, 3, 4, 5, 0, 0, 0, 6, 7, 8, 9, 10});
+    const std::vector<float> without_gap{1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
+    CHECK(heard(meta(capture(0, "2012-08-06T05:10:47.1Z") + "," + capture(5, ""))) == without_gap);
+    // A time in whole seconds says no more than that.
+    CHECK(heard(meta(capture(0, "2012-08-06T05:10:47Z") + "," + capture(5, "2012-08-06T05:10:47Z"))) == without_gap);
+    CHECK(heard(meta(capture(100, "2012-08-06T05:10:47Z") + "," + capture(105, "2012-08-06T05:10:57Z"),
+                     R"(, "core:offset": 100)"))
+              .size() == 10 + 95);
+    {
+        const auto recording = look_at_recording(folder / "r.sigmf-meta");
+        auto reader = SampleReader::open(*recording);
+        std::vector<std::complex<float>> room(8);
+        CHECK(reader->next(room)->size() == 5);
+        CHECK(reader->next(room)->size() == 8);
+        CHECK(reader->skip_hole() == 95 - 8);
+        CHECK(reader->next(room)->front().real() == 6.0F);
+    }
+    const std::string first = capture(0, "2012-08-06T05:10:47Z") + ",";
+    const std::vector<std::pair<std::string, std::string>> refused{
+        {capture(0, "not a time"), "capture 1 has a core:datetime that is no UTC time: 'not a time'"},
+        {first + R"({"core:sample_start": 5, "core:datetime": 7})", "capture 2 has a core:datetime that is no UTC"},
+        {first + capture(11, ""), "capture 2 begins at sample 11, behind the end of r.sigmf-data"},
+        {first + capture(5, "") + "," + capture(4, ""), "capture 3 begins before the one before it"},
+        {capture(0, "", R"(, "core:frequency": "X")"), "capture 1 has a core:frequency that is no number"}};
+    for (const auto& [captures, says] : refused)
+        CHECK_THAT(refusal(meta(captures)), Catch::Contains("r.sigmf-meta: ") && Catch::Contains(says));
+    CHECK_THAT(refusal(meta(first, R"(, "core:offset": 3)")), Catch::Contains("before core:offset, 3"));
+    for (const auto& [time, says] : {std::pair{"2012-08-06T05:10:40Z", "capture 2 is 7.500 s earlier than"},
+                                     {"2013-08-06T05:10:47Z", "capture 2 is 31536000 s after the samples before it"}}) {
+        const auto recording = look_at_recording(meta(first + capture(5, time)));
+        REQUIRE(recording);
+        const auto opened = SampleReader::open(*recording);
+        REQUIRE_FALSE(opened);
+        CHECK_THAT(opened.error().message, Catch::Contains("r.sigmf-meta: ") && Catch::Contains(says));
+    }
+    const auto told = look_at_recording(
+        meta(capture(0, "", R"(, "core:frequency": 8.4e9)") + "," + capture(5, "", R"(, "core:frequency": 2.2e9)")));
+    REQUIRE(told);
+    REQUIRE(told->told.size() == 1);
+    CHECK_THAT(told->told.front(), Catch::Contains("capture 2 is at 2200000000 Hz, not at 8400000000 Hz"));
+}
+
 TEST_CASE("what other files are is told in one line", "[tones][R56]") {
     const test::TemporaryFolder folder;
     CHECK(refusal(written(folder / "x.cf32", "fLaC and more")).find("is FLAC audio") != std::string::npos);
