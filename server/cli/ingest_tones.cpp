@@ -157,6 +157,8 @@ int ingest_tones(const IngestTonesOptions& options) {
     fmt::print("{} tones, {} erasures, {} estimates of the carrier, {} spectra\n", heard.tones, heard.erasures,
                heard.carrier, heard.spectra);
     if (const auto* status = station.tone_status()) heard.recording.status = *status;
+    double& gap_s = heard.recording.status.gap_s;
+    gap_s = std::max(gap_s, static_cast<double>(reader->samples_missing()) / rate_hz);
     heard.recording.tones = heard.tones;
     heard.recording.erasures = heard.erasures;
     heard.recording.length_s = static_cast<double>(passed) / rate_hz;

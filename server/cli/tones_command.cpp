@@ -161,6 +161,9 @@ void add(const telemetry::ReceiverStatus& part, telemetry::ReceiverStatus& sum) 
     all.contradicted += sum.contradicted;
     all.loudest = std::max(all.loudest, sum.loudest);
     if (!all.clock_error_ppm) all.clock_error_ppm = sum.clock_error_ppm;
+    for (const double hz : sum.left_out_hz)
+        if (std::ranges::none_of(part.left_out_hz, [&](double other) { return std::abs(other - hz) < 1.0; }))
+            all.left_out_hz.push_back(hz);
     sum = all;
 }
 

@@ -14,6 +14,12 @@ namespace {
 constexpr double doppler_most_hz = 500e3;       // chosen
 constexpr double clock_error_most_ppm = 600.0;  // that the receiver finds
 
+std::string frequencies(const std::vector<double>& lines_hz) {
+    std::string text;
+    for (const double hz : lines_hz) text += fmt::format("{}{:.1f}", text.empty() ? "" : ",", hz);
+    return text;
+}
+
 }  // namespace
 
 std::vector<ReceptionRemark> check_reception(const HeardRecording& heard, const SampleClaims& claims) {
@@ -35,6 +41,9 @@ std::vector<ReceptionRemark> check_reception(const HeardRecording& heard, const 
     if (status.contradicted > 0)
         tell(true, fmt::format("{} tones erased, as most lie between the tones' frequencies: the rate is wrong",
                                status.contradicted));
+    if (!status.left_out_hz.empty())
+        tell(false, fmt::format("lines that stand still beside the carrier were left out, at {} Hz",
+                                frequencies(status.left_out_hz)));
     for (const auto& [table, name, is_expected] :
          {std::tuple{&claims.predict_hz, "--predict", false}, std::tuple{&claims.expected_hz, "--expected", true}}) {
         const auto slope = table->empty() ? std::nullopt : telemetry::doppler_slope(heard.carrier, *table);
@@ -52,9 +61,14 @@ std::vector<ReceptionRemark> check_reception(const HeardRecording& heard, const 
         tell(true, fmt::format("no carrier was heard within {:.1f} s; rate {} Hz, format {}", heard.length_s,
                                claims.rate_hz, claims.format));
     else if (heard.tones == 0 && heard.length_s > claims.symbol_s)
-        tell(true, fmt::format("a carrier for {:.1f} s, and no tone on it{}; is {} Hz its rate, to {:.0f} ppm?",
-                               status.carrier_s, heard.erasures > 0 ? fmt::format(", {} erased", heard.erasures) : "",
-                               claims.rate_hz, clock_error_most_ppm));
+        tell(true,
+             fmt::format("a carrier for {:.1f} s, and no tone on it{}; is {} Hz its rate, to {:.0f} ppm?{}",
+                         status.carrier_s, heard.erasures > 0 ? fmt::format(", {} erased", heard.erasures) : "",
+                         claims.rate_hz, clock_error_most_ppm,
+                         status.standing_hz.empty()
+                             ? ""
+                             : fmt::format(" What stands still may be a line that hides the carrier: --exclude {}",
+                                           frequencies(status.standing_hz))));
     else if (heard.left_over_octets > 0)
         tell(true, fmt::format("{} octets behind the last whole sample: truncated, or not {}", heard.left_over_octets,
                                claims.format));

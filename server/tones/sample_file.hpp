@@ -26,6 +26,7 @@ class SampleReader {
     Result<std::span<const std::complex<float>>> next(std::span<std::complex<float>> room);
     /// All, with those that are missing.
     std::uint64_t samples() const { return samples_ + missing_all_; }
+    std::uint64_t samples_missing() const { return missing_all_; }
     /// The octets after the last whole sample: the file is truncated or of another format.
     std::uint64_t left_over_octets() const { return left_over_octets_; }
     /// Skips missing samples and a hole of a sparse file (zeros); returns the number of samples skipped.

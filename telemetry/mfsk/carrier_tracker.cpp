@@ -167,6 +167,7 @@ void CarrierTracker::normalize(Wiped& wiped) {
     noise_density_ = changed ? density : noise_density_ + noise_gain * (density - noise_density_);
     const auto scale = static_cast<float>(1.0 / std::sqrt(std::max(noise_density_, 1e-60)));
     for (auto& sample : wiped.thinned) sample *= scale;
+    wiped.density = noise_density_;
     wiped.spectrum = powers;
     wiped.spectrum_hz = wiped.frequency_hz + 0.5 * wiped.rate_hzps * layout_.hop_s();
     const auto one = static_cast<float>(1.0 / (std::max(noise_density_, 1e-60) * layout_.thinned_rate_hz()));
@@ -312,6 +313,7 @@ CarrierHop CarrierTracker::demodulated(const Wiped& hop, const CarrierLine& line
     out.rate_hzps = hop.rate_hzps + line.rate_hzps;
     const double energy = std::max(line.energy - fitted_bias, 1.0), seen_s = fitted.seen * fitted.length_s;
     out.carrier_n0_hz = energy / seen_s;
+    out.carrier_power = out.carrier_n0_hz * hop.density;
     out.frequency_deviation_hz =
         std::hypot(std::sqrt(6.0 / energy) / (turn_rad * seen_s), fitted.swerves ? swerve_sigma_hz : 0.0);
     const double sample_s = 1.0 / layout_.thinned_rate_hz();

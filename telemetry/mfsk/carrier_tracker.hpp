@@ -23,6 +23,7 @@ struct CarrierHop {
     double frequency_hz = 0.0, rate_hzps = 0.0;  ///< of the carrier in the samples, at the hop's middle
     double frequency_deviation_hz = 0.0;         ///< standard deviation of the frequency; 0 unless found
     double carrier_n0_hz = 0.0;                  ///< carrier power to noise density, of the window that was fitted
+    double carrier_power = 0.0;                  ///< in the units of the samples
     double seen = 0.0;                           ///< fraction of the hop that is not a gap
     /// The component in quadrature to the carrier, which holds the tone, if any, and the component in phase with it,
     /// less the carrier. Both are scaled by the hop's own noise to a noise deviation of about 1 a sample. Gaps are 0.
@@ -90,7 +91,8 @@ class CarrierTracker {
         double phase_cycles = 0.0, frequency_hz = 0.0, rate_hzps = 0.0;  ///< of the prediction, at the hop's start
         std::vector<std::complex<float>> thinned;
         std::array<std::complex<float>, HopLayout::parts> parts{};
-        double seen = 0.0;  ///< fraction that is not a gap
+        double seen = 0.0;     ///< fraction that is not a gap
+        double density = 0.0;  ///< of the noise before it was scaled to 1
         std::vector<float> spectrum;
         double spectrum_hz = 0.0;
         double cycles_at(double from_begin_s) const {

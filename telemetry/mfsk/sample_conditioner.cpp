@@ -33,10 +33,13 @@ double middle_power(std::span<const std::complex<float>> samples) {
 }  // namespace
 
 SampleConditioner::SampleConditioner(double rate_hz, std::span<const double> excluded_hz)
-    : notch_gain_(1.0 / (notch_s * rate_hz)),
+    : rate_hz_(rate_hz), notch_gain_(1.0 / (notch_s * rate_hz)),
       run_longest_(std::max(run_least, static_cast<std::int64_t>(run_s * rate_hz))) {
-    for (const double hz : excluded_hz)
-        notches_.push_back({std::polar(1.0, -2.0 * std::numbers::pi * hz / rate_hz), {1.0, 0.0}, {}});
+    for (const double hz : excluded_hz) exclude(hz);
+}
+
+void SampleConditioner::exclude(double line_hz) {
+    notches_.push_back({std::polar(1.0, -2.0 * std::numbers::pi * line_hz / rate_hz_), {1.0, 0.0}, {}});
 }
 
 /// The mean follows a lasting change of level within some hundreds of samples.

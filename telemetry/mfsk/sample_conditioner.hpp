@@ -19,6 +19,8 @@ class SampleConditioner {
     /// `excluded_hz`: frequencies in the samples; 0 is a DC block.
     SampleConditioner(double rate_hz, std::span<const double> excluded_hz);
 
+    /// Takes out a further line, from the next sample on; it is gone after some 2 s.
+    void exclude(double line_hz);
     /// Appends the conditioned samples to `out`. Returns the largest power among them.
     double push(std::span<const std::complex<float>> samples, std::vector<std::complex<float>>& out);
     /// Appends what still waits.
@@ -33,7 +35,7 @@ class SampleConditioner {
     std::complex<float> notched(std::complex<float> sample);
 
     std::vector<Notch> notches_;
-    double notch_gain_;
+    double rate_hz_, notch_gain_;
     double mean_power_ = 0.0;  ///< recent mean of the samples; 0: none yet
     std::int64_t run_longest_;
     std::complex<float> run_value_;

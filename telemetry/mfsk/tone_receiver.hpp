@@ -1,72 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "common/result.hpp"
-#include "common/time_table.hpp"
-#include "telemetry/mfsk/carrier_report.hpp"
-#include "telemetry/mfsk/carrier_search.hpp"
-#include "telemetry/mfsk/doppler_remover.hpp"
-#include "telemetry/mfsk/sample_conditioner.hpp"
-#include "telemetry/mfsk/symbol_sequence.hpp"
+#include "telemetry/mfsk/single_receiver.hpp"
+#include "telemetry/mfsk/standing_lines.hpp"
 
-#include <array>
-#include <complex>
-#include <cstdint>
-#include <deque>
-#include <limits>
+#include <list>
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace aeolis::telemetry {
 
-/// A decided tone or an erasure, with its evidence.
-struct ToneReception {
-    std::optional<std::uint8_t> tone;           ///< none: erased
-    double start_s = 0.0;                       ///< in the samples' time, to a hop (1/8 s)
-    double total_c_n0_dbhz = 0.0;               ///< total power to noise density
-    double doppler_hz = 0.0;                    ///< predicted plus tracked; the symbol's mean
-    CarrierLock lock = CarrierLock::searching;  ///< the worst during the symbol
-    double seen_fraction = 0.0;                 ///< fraction of the symbol with a carrier
-    ToneEvidence evidence;
-};
-
-/// The receiver's state after the newest decided hop.
-struct ReceiverStatus {
-    CarrierLock lock = CarrierLock::searching;
-    double total_c_n0_dbhz = 0.0, doppler_hz = 0.0;
-    double carrier_s = 0.0, without_s = 0.0;  ///< present times with and without a carrier
-    double gap_s = 0.0;                       ///< of those, without usable samples
-    int acquisitions = 0;
-    double loudest = 0.0;  ///< largest power of a sample
-    int contradicted = 0;  ///< tones erased because others lie between the tones' frequencies: a wrong rate
-    std::optional<double> clock_error_ppm;  ///< of the samples' clock, from the tones' frequencies; none: not yet known
-};
-
-/// What a receiver is told about its samples.
-struct ReceiverInput {
-    TimeTable predict_hz;                  ///< Doppler removed before sampling
-    double start_s = 0.0;                  ///< the first sample's time on the predict's scale
-    TimeTable expected_hz;                 ///< Doppler still in the samples, as of a fixed oscillator: removed here
-    std::vector<double> excluded_hz;       ///< lines in the samples that are left out; 0 is a DC block
-    std::optional<double> symbols_from_s;  ///< symbols begin then, and directly after each other; none: at any time
-};
-
 /// Ground's receiver of X-band tones: complex samples in, decisions out.
 ///
-/// In       blocks of samples of any length, at a fixed rate; the predict that was removed before sampling
-/// Out      one reception a symbol by take(), 1 to 20 s after the symbol's end
-/// Carriers three are followed at a time at most. Of those the one with tones is the vehicle's: another takes its place
-///          when it is lost, or when the other shows a tone and it has shown none for two symbols
-/// Noise    of tones: what is in phase with the carrier at their frequencies, the median over their neighbours
-/// Clock    an error of the samples' clock to 600 ppm shifts the tones. It is found when tones agree on it, and those
-///          of the last 45 s are then decided. Where most of them contradict the clock, tones are erased
-/// Memory   6 s of samples, and the sums of 45 s
-/// Faults   silence, noise, gaps and values that are not numbers give no reception; a pulse far above the rest is
-///          blanked; a lost carrier is searched for again
+/// In      blocks of samples of any length, at a fixed rate; the predict that was removed before sampling
+/// Out     one reception a symbol by take(), 1 to 20 s after the symbol's end
+/// Lines   near the carrier that stand still are not the vehicle's: while no tone is heard, a second receiver listens
+///         without the line that is followed, and the first that hears a tone stays. Once tones are heard, a line beside
+///         their carrier is taken out
+/// Faults  as of SingleReceiver. A line at the carrier's own frequency, to some 3 Hz, cannot be told from it
 class ToneReceiver {
   public:
-    static constexpr double rate_least_hz = 3000.0, rate_greatest_hz = 1.0e6;  ///< chosen
+    static constexpr double rate_least_hz = SingleReceiver::rate_least_hz;
+    static constexpr double rate_greatest_hz = SingleReceiver::rate_greatest_hz;
 
     /// Fails for a rate out of range or too low for the tones.
     static Result<ToneReceiver> make(const MfskWaveform& waveform, double rate_hz, ReceiverInput input = {});
@@ -82,100 +38,42 @@ class ToneReceiver {
     const ReceiverStatus& status() const { return status_; }
 
   private:
-    /// A carrier that is followed, and what it brought.
-    struct Track {
-        Track(const HopLayout& layout, SymbolSequence symbols);
-        CarrierTracker tracker;
-        std::int64_t first_hop = 0, next_hop = 0;  ///< numbers of hops
-        std::deque<HopEvidence> hops;              ///< that have not gone on, from first_hop
-        SymbolSequence own;                        ///< on probation
-        std::vector<DecidedSymbol> shown;
-        std::int64_t began_hop = 0;
-        double frequency_hz = 0.0, rate_hzps = 0.0, carrier_n0_hz = 0.0;
-        std::int64_t frequency_hop = 0;
-        double lead_s = 0.0;
-        double noise_ratio = 1.0;                       ///< of the density beside the carrier to the hops' own
-        std::array<float, MfskWaveform::tones> noise;   ///< of each tone, running means
-        std::array<float, MfskWaveform::tones> smooth;  ///< medians over the neighbours
-        std::vector<float> spectrum;                    ///< around the carrier, running means
-        SidebandRatios sideband_ratios;
-        int noise_hops = 0;
-        bool ended = false;
+    static constexpr double never_s = -1e18;
+
+    /// A receiver that takes some lines for none of the vehicle's.
+    struct Beside {
+        SingleReceiver receiver;
+        std::vector<double> left_out_hz;
+        std::int64_t begun = 0;  ///< samples received before it
+        std::vector<ToneReception> receptions;
+        std::vector<CarrierReport> reports;
     };
 
-    ToneReceiver(const MfskWaveform& waveform, double rate_hz, ReceiverInput input);
+    ToneReceiver(const MfskWaveform& waveform, double rate_hz, ReceiverInput input, SingleReceiver receiver)
+        : waveform_(waveform), rate_hz_(rate_hz), input_(std::move(input)), receiver_(std::move(receiver)) {}
 
-    SymbolSequence new_sequence(std::int64_t first_hop) const;
-    void take_in(std::size_t from);
-    double removed_hz(double time_s) const { return input_.predict_hz.at(time_s) + input_.expected_hz.at(time_s); }
-    void work(bool last);
-    void consider(const CarrierFound& found);
-    bool is_known(double frequency_hz, std::int64_t hop, double n0_hz) const;
-    void follow(Track& track);
-    HopEvidence evidence_of(Track& track, const CarrierHop& hop);
-    void learn_noise(Track& track, const CarrierHop& hop, const ToneSums& in_phase);
-    void judge();
-    void feed(bool last);
-    void pass(HopEvidence hop);
-    bool passes_main(bool last);
-    bool is_taken_up(const Track& missing) const;
-    bool passes_without_main(bool last);
-    void learn_clock(const HopEvidence& hop);
-    void judge_clock();
-    void set_clock(double error);
-    bool clock_contradicts() const;
-    void refine_clock(const DecidedSymbol& symbol);
-    void turn(HopEvidence& hop, double lead_s) const;
-    void publish(std::vector<DecidedSymbol>& decided);
-    void publish_held(bool all);
-    void come_out(const DecidedSymbol& symbol, bool contradicted);
-    Track* main() { return main_ ? &tracks_[*main_] : nullptr; }
-    void drop(std::size_t track);
-    bool shows_tones() const;
+    void take_from_all();
+    void judge_lines();
+    void listen_without(const std::vector<double>& lines_hz);
+    bool is_left_out(double line_hz) const;
+    bool takes_over(const Beside& beside) const;
+    void take_over(Beside& beside);
+    void tell_status();
 
     MfskWaveform waveform_;
-    HopLayout layout_;
+    double rate_hz_;
     ReceiverInput input_;
-    SampleConditioner conditioner_;
-    std::optional<DopplerRemover> remover_;
-    CarrierSearch carrier_search_;
-    ToneCorrelator correlator_;
-    int symbol_hops_;
-    SymbolSequence sequence_;
-
-    std::vector<std::complex<float>> samples_;  ///< the last seconds
-    std::int64_t first_kept_ = 0;               ///< number of the first of them
-    std::vector<CarrierFound> found_;
-    std::vector<Track> tracks_;
-    std::optional<std::size_t> main_;  ///< of tracks_
-    std::int64_t fed_ = 0;             ///< hops given to the sequence
-    std::int64_t last_tone_hop_ = -1;  ///< the end of the newest tone
-    std::int64_t no_earlier_sample_ = std::numeric_limits<std::int64_t>::min();
-    struct Silent {
-        double frequency_hz;
-        std::int64_t until_hop;
-    };
-    std::vector<Silent> silent_;  ///< carriers without tones, not followed for a while
-
-    double lead_s_ = 0.0, lead_rate_ = 0.0;  ///< of the subcarriers' time at the hop fed_, by Doppler
-    double clock_lead_s_ = 0.0;              ///< the same by the clock's error
-    std::deque<HopEvidence> recent_;         ///< given to the sequence, for a clock that is found late
-    std::int64_t received_ = 0;              ///< hops received
-    struct Clock {
-        std::vector<ToneSums> sums, turns, steps;  ///< by hypothesis
-        double energy = 0.0;
-        int hops = 0;
-        double error = 0.0, weight = 0.0;
-        struct Look {
-            std::uint8_t tone;
-            double error;
-        };
-        std::deque<Look> looks;  ///< the newest that showed a tone
-    } clock_;
-    std::vector<DecidedSymbol> decided_;
-    std::deque<DecidedSymbol> held_;  ///< that contradict the clock, which may yet turn out to be wrong
+    std::optional<SingleReceiver> receiver_;  ///< always one
+    std::list<Beside> besides_;
+    std::optional<StandingLines> lines_;
+    std::int64_t looks_judged_ = 0;
+    std::int64_t received_ = 0;  ///< samples
+    bool ended_ = false;
+    std::vector<double> left_out_hz_;
     std::vector<ToneReception> receptions_;
     std::vector<CarrierReport> reports_;
+    double last_begin_s_ = never_s, last_tone_s_ = never_s, last_report_s_ = never_s;  ///< of what was told
+    ReceiverStatus before_;  ///< counts of receivers that another took over from
     ReceiverStatus status_;
 };
 

@@ -44,6 +44,16 @@ TEST_CASE("a recording in which nothing usable was heard is a fault, in one line
     wrong_rate.status.contradicted = 2;
     CHECK_THAT(only(wrong_rate), Catch::Contains("the rate is wrong"));
 
+    auto hidden = music;
+    hidden.status.standing_hz = {0.0, 40.04};
+    CHECK_THAT(only(hidden), Catch::Contains("to 600 ppm? What stands still may be a line that hides the carrier: "
+                                             "--exclude 0.0,40.0"));
+    auto beside = good;
+    beside.status.left_out_hz = {0.0};
+    const auto left_out = check_reception(beside, claims);
+    REQUIRE(left_out.size() == 1);
+    CHECK_FALSE(left_out.front().fault);
+    CHECK(left_out.front().text == "lines that stand still beside the carrier were left out, at 0.0 Hz");
     auto elsewhere = claims;
     elsewhere.carrier_hz = 8.4e9;
     for (const auto& [middle_hz, faults] : {std::pair{2.2e9, 1U}, {8.4e9, 0U}, {8.4e9 + 450e3, 0U}}) {

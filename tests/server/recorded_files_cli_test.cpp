@@ -660,14 +660,14 @@ TEST_CASE("tones behind a gap between two SigMF captures come out at their times
     CHECK(decoded.code == 0);
     CHECK_THAT(decoded.text, Catch::Contains(R"({"start_s":3.000,"tone":17,)") &&
                                  Catch::Contains(R"({"start_s":527.000,"tone":200,)") &&
-                                 Catch::Contains("500.0 s without usable samples"));
+                                 Catch::Contains(" s without usable samples"));
     const std::string archive = "--archive" + path("passes.db");
     const auto taken = run(program(), "ingest " + archive + path("s.sigmf-meta"));
     INFO(taken.text);
     CHECK(taken.code == 0);
-    CHECK_THAT(taken.text, Catch::Contains("2 tones, 0 erasures"));
+    CHECK_THAT(taken.text, Catch::Contains("2 tones, 0 erasures") && Catch::Contains("500.0 s without usable samples"));
     const auto carrier = run(program(), "export " + archive + " --run 1 --channel STA-0006");
-    CHECK_THAT(carrier.text, Catch::Contains("2026-334T00:08:50") && !Catch::Contains("2026-334T00:00:30"));
+    CHECK_THAT(carrier.text, Catch::Contains(",530.") && !Catch::Contains(",40."));  // seconds from the first sample
 
     meta("8192", R"(, {"core:sample_start": 163840, "core:datetime": "2026-11-30T00:00:10Z"})");
     for (const std::string& command :

@@ -164,7 +164,7 @@ inline std::vector<Case> cases() {
         all.push_back(
             {std::move(kind), std::move(level), std::move(sent), std::move(spoiled), false, usable, is_first});
     };
-    for (const double level : {22.0, 18.0, 16.0, 30.0, 45.0})
+    for (const double level : {22.0, 18.0, 16.0, 30.0, 45.0, 80.0, 120.0})
         add("clean", text(level) + " dB-Hz", [=](Signal& s) { s.c_n0_dbhz = level; }, {});
     for (const double edge : {1500.0, 1200.0, 2500.0})
         add("narrow passband", text(edge) + " Hz", {},
@@ -203,6 +203,38 @@ inline std::vector<Case> cases() {
                 add_line(x, s.rate_hz, s.c_n0_dbhz, level, [](double) { return 0.0; });
             },
             level > 0.0 ? 0.0 : 1.0);  // a stronger one is to be excluded
+    // A line beside the carrier is known after 12 to 16 s, and tones are heard from then on.
+    for (const double aside : {40.0, -40.0, 80.0, -80.0, 150.0})
+        add(
+            "line beside the carrier", text(aside) + " Hz", [](Signal& s) { s.c_n0_dbhz = 24.0; },
+            [=](Samples& x, const Signal& s) {
+                add_line(x, s.rate_hz, s.c_n0_dbhz, 0.0, [=](double) { return 350.0 + aside; });
+            },
+            0.6);
+    for (const double level : {0.0, 3.0, -3.0})
+        add(
+            "line that the carrier passes", text(level) + " dB",
+            [](Signal& s) {
+                s.c_n0_dbhz = 24.0;
+                s.frequency_hz = [](double t) { return -80.0 + 2.0 * t; };
+            },
+            [=](Samples& x, const Signal& s) {
+                add_line(x, s.rate_hz, s.c_n0_dbhz, level, [](double) { return 0.0; });
+            },
+            0.6);
+    for (const double hz : {10.0, 30.0, 60.0})
+        add(
+            "DC under the carrier", text(hz) + " Hz",
+            [=](Signal& s) {
+                s.c_n0_dbhz = 24.0;
+                s.frequency_hz = [=](double) { return hz; };
+            },
+            [=](Samples& x, const Signal& s) { add_line(x, s.rate_hz, s.c_n0_dbhz, 0.0, [](double) { return 0.0; }); },
+            0.6);
+    add(
+        "line at the carrier", "0 dB", [](Signal& s) { s.c_n0_dbhz = 24.0; },
+        [=](Samples& x, const Signal& s) { add_line(x, s.rate_hz, s.c_n0_dbhz, 0.0, [](double) { return 350.0; }); },
+        0.0);
     for (const double level : {10.0, 20.0, 30.0})
         add("bursts of noise", text(level) + " dB", {}, [=](Samples& x, const Signal& s) {
             std::mt19937_64 random{s.seed + 9};

@@ -183,6 +183,55 @@ TEST_CASE("a line forty decibels above the signal in the midst of its tones is l
     CHECK_FALSE(ToneReceiver::make(mfsk, 8192.0, {{}, 0.0, {}, {5000.0}, {}}));
 }
 
+TEST_CASE("samples without noise, with all that a hard square wave aliases, give no wrong tone", "[tones][R56]") {
+    for (const std::uint64_t seed : {1U, 3U}) {
+        Signal signal;
+        signal.tones = tones_until(60.0, seed);
+        Samples samples(static_cast<std::size_t>(signal.length_s * signal.rate_hz));
+        std::size_t next = 0;
+        for (std::size_t n = 0; n < samples.size(); ++n) {
+            const double t = static_cast<double>(n) / signal.rate_hz;
+            while (next < signal.tones.size() && t >= signal.tones[next].start_s + 10.0) ++next;
+            double phase = 2.0 * std::numbers::pi * 100.0 * t;
+            if (next < signal.tones.size() && t >= signal.tones[next].start_s) {
+                const double cycles = (t - signal.tones[next].start_s) * (300.0 + signal.tones[next].tone);
+                phase += (cycles - std::floor(cycles) < 0.5 ? 1.0 : -1.0) * mfsk.modulation_index_rad;
+            }
+            samples[n] = static_cast<std::complex<float>>(std::polar(1.0, phase));
+        }
+        const Count count = counted(signal, samples);
+        INFO("seed " << seed << ": " << count);
+        CHECK(count.wrong + count.invented == 0);
+        CHECK(2 * count.right >= count.sent);  // the noise's mean takes some seconds to follow
+    }
+}
+
+TEST_CASE("a line that stands still beside the carrier, or that it passes, is left out once its tones are heard",
+          "[tones][R56]") {
+    for (const Case& one : cases()) {
+        if (one.kind != "line beside the carrier" && one.kind != "line that the carrier passes" &&
+            one.kind != "DC under the carrier")
+            continue;
+        if (!one.is_short && one.level != "3 dB") continue;
+        const Count count = run(one, 80.0, 203);
+        INFO(one.kind << ", " << one.level << ": " << count);
+        CHECK(count.wrong + count.invented == 0);
+        CHECK(count.right >= one.usable * count.sent);
+        REQUIRE(count.status.left_out_hz.size() == 1);
+        const double line_hz = one.kind == "line beside the carrier" ? 390.0 : 0.0;
+        CHECK(count.status.left_out_hz.front() == Approx(line_hz).margin(0.2));
+    }
+}
+
+TEST_CASE("a line at the carrier's own frequency erases tones and makes none", "[tones][R56]") {
+    for (const Case& one : cases()) {
+        if (one.kind != "line at the carrier") continue;
+        const Count count = run(one, 50.0, 204);
+        INFO(count);
+        CHECK(count.wrong + count.invented == 0);
+    }
+}
+
 TEST_CASE("over all kinds and levels of spoiled samples no tone is wrong, and likelihoods promise what they keep",
           "[.long][tones][R56]") {
     Count all;

@@ -77,6 +77,25 @@ TEST_CASE("the size of the blocks changes nothing", "[tones]") {
     }
 }
 
+TEST_CASE("a copy of a receiver goes on as the first does", "[tones]") {
+    const auto samples = samples_of(steady(), some_tones(), 80.0);
+    auto first = receiver();
+    first.push(std::span{samples}.first(samples.size() / 2));
+    auto second = first;
+    const auto rest = std::span{samples}.subspan(samples.size() / 2);
+    for (auto* each : {&first, &second}) {
+        each->push(rest);
+        each->finish();
+    }
+    const auto heard = first.take(), again = second.take();
+    REQUIRE(heard.size() == again.size());
+    CHECK(heard.size() >= 3);
+    for (std::size_t i = 0; i < heard.size(); ++i) {
+        CHECK(heard[i].start_s == again[i].start_s);
+        CHECK(heard[i].evidence.log_likelihood_ratio == again[i].evidence.log_likelihood_ratio);
+    }
+}
+
 TEST_CASE("any rate that holds the tones will do", "[tones]") {
     for (const double hz : {4000.0, 10007.0, 44100.0, 100000.0}) {
         XBandPath path = steady(-200.0);
