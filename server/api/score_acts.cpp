@@ -31,7 +31,8 @@ std::string first_line(const std::string& text) {
 }
 
 std::string with_reason(std::string deed, const std::string& reason) {
-    return reason.empty() ? deed : deed + ": " + reason;
+    if (!reason.empty()) deed += ": " + reason;
+    return deed;
 }
 
 /// "ticked look of uhf_lost".
