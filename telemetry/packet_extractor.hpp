@@ -50,8 +50,8 @@ struct PointerVerdicts {
 ///          mission
 /// Memory   one packet and one frame
 /// Holds    a packet that ends at the end of a frame's data, where a control field or a CRC may be taken for data,
-///          until the channel's next frame in which a packet begins: its pointer must agree. Once `agreed_enough` pointers in a row have, no
-///          longer. Where that frame is missing or idle, or the stream ends, it is given out unless the pointer before
+///          until the channel's next frame in which a packet begins: its pointer must agree. Once `agreed_enough`
+///          pointers in a row have agreed, nothing is held. Where that frame is missing or idle, or the stream ends, it is given out unless the pointer before
 ///          contradicted
 /// Faults   a missing frame, or a pointer that contradicts the packet before it, loses the unfinished packet and what
 ///          is held; extraction resumes at the next pointer. Of a late frame the packets that it holds whole are

@@ -41,7 +41,7 @@ std::optional<UtcInstant> since_date(Scet epoch, double seconds, const TimeKerne
     return tai_s ? kernels.leaps->utc_of_tai(*tai_s + seconds) : std::nullopt;
 }
 
-/// The instant of days and seconds of the day: by the calendar alone. None where the epoch is no midnight that is known.
+/// The instant of days and seconds of the day, by the calendar alone; none where the epoch is no known midnight.
 std::optional<UtcInstant> of_days(const PacketTime& time) {
     constexpr double gps_epoch_s = -630763200.0;  // 1980-01-06 UTC
     std::optional<double> epoch_s;

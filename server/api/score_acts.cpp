@@ -50,7 +50,8 @@ std::string deed_of(const v1::ProcedureAct& act) {
     case v1::ProcedureAct::hold: return with_reason("held " + of, act.reason());
     case v1::ProcedureAct::release: return "released " + step;
     case v1::ProcedureAct::acknowledge: return "saw watchdog " + step;
-    default: return with_reason("stopped " + of, act.reason());
+    case v1::ProcedureAct::stop: return with_reason("stopped " + of, act.reason());
+    default: return "acted on " + step + ", in a way that this server does not know";
     }
 }
 
@@ -62,7 +63,8 @@ std::string deed_of(const v1::PositionAct& act) {
     case v1::PositionAct::leave: return with_reason("left " + act.position(), act.reason());
     case v1::PositionAct::poll: return "called a poll: " + act.subject();
     case v1::PositionAct::go: return with_reason("said go as " + act.position(), act.reason());
-    default: return with_reason("said no go as " + act.position(), act.reason());
+    case v1::PositionAct::no_go: return with_reason("said no go as " + act.position(), act.reason());
+    default: return "acted on " + act.position() + ", in a way that this server does not know";
     }
 }
 

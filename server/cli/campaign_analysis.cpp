@@ -39,8 +39,6 @@ int export_cases(const std::filesystem::path& file, const std::filesystem::path&
     for (const auto& out : {csv, hdf5})
         if (!out.empty())
             if (const auto possible = can_be_made(out); !possible) return said(possible.error());
-    const auto header = campaign::results_header(file);
-    if (!header) return said(header.error());
     const auto table = table_of(file);
     if (!table) return said(table.error());
     const auto make = [&](const std::filesystem::path& out, const std::string& octets) -> Result<void> {
@@ -52,6 +50,8 @@ int export_cases(const std::filesystem::path& file, const std::filesystem::path&
     if (!csv.empty())
         if (const auto made = make(csv, campaign::csv_of(*table)); !made) return said(made.error());
     if (hdf5.empty()) return 0;
+    const auto header = campaign::results_header(file);
+    if (!header) return said(header.error());
     const auto octets = campaign::hdf5_of(*table, {header->scenario, header->seed});
     if (!octets) return said(octets.error());
     if (const auto made = make(hdf5, *octets); !made) return said(made.error());

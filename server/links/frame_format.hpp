@@ -42,8 +42,7 @@ telemetry::ForeignStation::Recognise recognise_by(const PacketStreamFormat& form
 std::string nothing_found(const PacketStreamFormat& format, const telemetry::LinkCounters& link,
                           const telemetry::PacketCounters& packets, bool counted);
 
-/// Advice on options when the first header pointers of frames contradict the packets before them again and again; empty:
-/// they do not.
+/// Advice on options when most first header pointers of frames contradict the packets before them; empty: they do not.
 std::string pointers_contradict(const PacketStreamFormat& format, const telemetry::PointerVerdicts& pointers);
 
 /// Whether packet_source() uses the beginning at all.

@@ -360,7 +360,7 @@ void SingleReceiver::judge() {
         const DecidedSymbol& shown = track.shown.back();
         const std::int64_t began = shown.first_sample / layout_.hop_samples();
         if (track.ended || last_tone_hop_ > began - 2 * symbol_hops_) continue;
-        // Lines of the vehicle's own signal may seem to show tones, too: a stronger carrier has the time to show its own.
+        // Lines of the vehicle's own signal may seem to show tones, too. A stronger carrier has time to show its own.
         const bool is_weak = main() != nullptr && main()->tracker.missed() == 0 &&
                              track.carrier_power < sideband_power * main()->carrier_power;
         const std::int64_t waited = fed_ - track.shown.front().first_sample / layout_.hop_samples();

@@ -50,9 +50,9 @@ class SingleReceiver {
     std::vector<CarrierReport> take_carrier();
 
     const ReceiverStatus& status() const { return status_; }
-    /// Frequency of the followed carrier in the samples, before the expected Doppler is removed; none while it is missed.
+    /// Frequency of the followed carrier in the samples, with the expected Doppler; none while it is missed.
     std::optional<double> carrier_hz() const;
-    /// Whether a tone was heard within two symbols, and a line of which is followed.
+    /// Whether the followed carrier is there, and has shown a tone within the last three symbols.
     bool is_content() const;
     /// Whether the newest tone was heard on a carrier that was at no time within 3 Hz of `line_hz` in the samples.
     bool heard_apart_from(double line_hz) const;

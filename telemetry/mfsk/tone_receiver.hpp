@@ -15,9 +15,9 @@ namespace aeolis::telemetry {
 ///
 /// In      blocks of samples of any length, at a fixed rate; the predict that was removed before sampling
 /// Out     one reception a symbol by take(), 1 to 20 s after the symbol's end
-/// Lines   near the carrier that stand still are not the vehicle's: while no tone is heard, a second receiver listens
-///         without the line that is followed, and the first that hears a tone stays. Once tones are heard, a line beside
-///         their carrier is taken out
+/// Lines   that stand still near the carrier may not be the vehicle's. While no tone is heard, up to three receivers
+///         listen beside: without the strongest line, without the second, without both. The first that hears a tone
+///         takes over. Once tones are heard, lines beside their carrier are taken out
 /// Faults  as of SingleReceiver. A line at the carrier's own frequency, to some 3 Hz, cannot be told from it
 class ToneReceiver {
   public:

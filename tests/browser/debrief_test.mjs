@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rehearsal by a plan, with a room that does some of what is expected, and a fork of it: the debrief has all of it side
-// by side, on each window and on paper, in both themes.
+// A rehearsal by a plan, with a room that does some of what is expected, and a fork of it: the debrief has all of it,
+// on each window and on paper, in both themes.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { comesToRest, control, findings, flyTo, untilRun, waitFor, workplace } from './support.mjs';
@@ -8,7 +8,7 @@ import { notWhole } from './texts.mjs';
 
 const { open, serve } = workplace();
 
-test('a debrief has injects against reactions, missed steps, a fork and the score, whole on each window and on paper', async (t) => {
+test('a debrief has injects against reactions, missed steps, a fork and the score, on windows and paper', async (t) => {
   const server = await serve(t, 'debrief');
   const post = async (route, body) => {
     const answer = await fetch(`${server.address}/api/v1${route}`, { method: 'POST', body: JSON.stringify(body) });

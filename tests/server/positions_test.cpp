@@ -3,6 +3,7 @@
 
 #include "server/archive/reader.hpp"
 #include "server/pipeline/pipeline.hpp"
+#include "tests/server/reopened_ground.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
 
@@ -43,20 +44,8 @@ PositionActRecord poll(const char* subject, std::int64_t ert_s) {
     return record;
 }
 
-struct Ground {
-    TemporaryFolder folder;
-    dictionary::Dictionary dictionary = small_dictionary();
-    std::filesystem::path file = folder / "a.db";
-    std::optional<Archive> archive;
-    std::optional<Pipeline> pipeline;
-
-    Ground() { open(); }
-    void open() {
-        pipeline.reset();
-        archive.reset();
-        archive.emplace(std::move(Archive::open(file)).value());
-        pipeline.emplace(*archive, dictionary);
-    }
+struct Ground : test::ReopenedGround {
+    Ground() : ReopenedGround(small_dictionary()) {}
     void hear(std::uint16_t count) {
         REQUIRE(pipeline->accept(live(navigation_packet(count, 1000.0 + count, 9000.0F, 400.0F), count * second_us)));
     }
@@ -70,7 +59,6 @@ struct Ground {
         REQUIRE(taken);
         return taken->refused;
     }
-    Reader reader() const { return std::move(Reader::open(file, dictionary)).value(); }
     std::vector<v1::Item> acts(RunId run = first_run) const { return reader().position_acts(run).value(); }
     std::vector<std::string> texts(RunId run) const {
         std::vector<std::string> all;
@@ -78,18 +66,6 @@ struct Ground {
         REQUIRE(page);
         for (const auto& item : page->items) all.push_back(item.ShortDebugString());
         return all;
-    }
-    pipeline::Compare compare() const {
-        return [this](const pipeline::PublishedBatch& again) -> Result<void> {
-            const auto items = reader().items(again.run, again.first_seq - 1, 10'000)->items;
-            for (const auto& item : again.items) {
-                if (item.item_case() == v1::Item::ITEM_NOT_SET) continue;
-                const auto before = std::ranges::find(items, item.seq(), &v1::Item::seq);
-                if (before == items.end() || before->SerializeAsString() != item.SerializeAsString())
-                    return Error{"item " + item.ShortDebugString()};
-            }
-            return {};
-        };
     }
     /// A directed room whose poll has come to a go, with a packet before each act.
     void fly_to_go() {

@@ -3,6 +3,7 @@
 
 #include "server/archive/reader.hpp"
 #include "server/pipeline/pipeline.hpp"
+#include "tests/server/reopened_ground.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
 
@@ -66,23 +67,8 @@ struct Packet {
 };
 using Input = std::variant<Packet, telemetry::EarthTime, ProcedureActRecord, archive::NoteRecord>;
 
-struct Ground {
-    TemporaryFolder folder;
-    dictionary::Dictionary dictionary = small_dictionary();
-    std::filesystem::path file = folder / "a.db";
-    std::optional<Archive> archive;
-    std::optional<Pipeline> pipeline;
-    std::vector<v1::Item> published;
-
-    Ground() { open(); }
-    void open() {
-        pipeline.reset();
-        archive.reset();
-        archive.emplace(std::move(Archive::open(file)).value());
-        pipeline.emplace(*archive, dictionary);
-        pipeline->on_publish(
-            [this](const auto& batch) { published.insert(published.end(), batch->items.begin(), batch->items.end()); });
-    }
+struct Ground : test::ReopenedGround {
+    Ground() : ReopenedGround(small_dictionary()) {}
     void hear(std::uint16_t count, std::int64_t ert_us, float speed_mps) {
         REQUIRE(pipeline->accept(live(navigation_packet(count, 1000.0 + count, 9000.0F, speed_mps), ert_us)).ok());
     }
@@ -104,7 +90,6 @@ struct Ground {
             REQUIRE(pipeline->act(run, std::get<ProcedureActRecord>(input)).ok());
         }
     }
-    Reader reader() const { return std::move(Reader::open(file, dictionary)).value(); }
     std::vector<v1::Item> stored(RunId run = first_run) const { return reader().items(run, 0, 10'000)->items; }
     /// The items of the procedures: "act", or the status with its steps' states.
     std::vector<std::string> told() {
@@ -118,19 +103,6 @@ struct Ground {
             for (const auto& step : item.procedure().steps()) line += ' ' + v1::ProcedureStep::State_Name(step.state());
         }
         return all;
-    }
-    /// Compares items that are produced again with those of the archive.
-    pipeline::Compare compare() const {
-        return [this](const pipeline::PublishedBatch& again) -> Result<void> {
-            const auto items = reader().items(again.run, again.first_seq - 1, 10'000)->items;
-            for (const auto& item : again.items) {
-                if (item.item_case() == v1::Item::ITEM_NOT_SET) continue;
-                const auto before = std::ranges::find(items, item.seq(), &v1::Item::seq);
-                if (before == items.end() || before->SerializeAsString() != item.SerializeAsString())
-                    return Error{"item " + item.ShortDebugString()};
-            }
-            return {};
-        };
     }
 };
 

@@ -650,8 +650,8 @@ TEST_CASE("tones behind a gap between two SigMF captures come out at their times
     const auto meta = [&](const std::string& rate, const std::string& more) {
         std::ofstream{folder / "s.sigmf-meta"}
             << R"({"global": {"core:datatype": "cf32_le", "core:sample_rate": )" << rate
-            << R"(}, "captures": [{"core:sample_start": 0, "core:frequency": 8.4e9, "core:datetime": "2026-11-30T00:00:00Z"})"
-            << more << R"(], "annotations": []})";
+            << R"(}, "captures": [{"core:sample_start": 0, "core:frequency": 8.4e9,)"
+            << R"( "core:datetime": "2026-11-30T00:00:00Z"})" << more << R"(], "annotations": []})";
     };
     // 20 s are stored, and then 500 s are missing.
     meta("8192", R"(, {"core:sample_start": 163840, "core:datetime": "2026-11-30T00:08:40Z"})");

@@ -324,6 +324,30 @@ TEST_CASE("a run that the server left when it ended goes on in the same run as i
     end_and_continue(9'000, 3'000, Ended::left);
 }
 
+TEST_CASE("who hears of a run's end may begin another: the runner is over by then", "[rehearsal][threads]") {
+    const test::TemporaryFolder folder;
+    const dictionary::Dictionary& dictionary = tests::shipped_dictionary();
+    PipelineThread pipeline{std::move(archive::Archive::open(folder / "a.db")).value(), dictionary,
+                            PipelineThread::Faults::give_up, [](const auto&) {}};
+    std::atomic<RehearsalRunner*> told_of{nullptr};
+    std::atomic<int> ends{0}, over_by_then{0};
+    RehearsalRunner::Callbacks callbacks;
+    callbacks.on_begun = [](const auto&) {};
+    callbacks.on_clocks = [](const auto&) {};
+    callbacks.on_state = [&](const v1::RunState& state) {
+        if (state.state() != v1::RunState::finished) return;
+        while (told_of == nullptr) std::this_thread::sleep_for(std::chrono::milliseconds{1});
+        over_by_then += told_of.load()->over() ? 1 : 0;
+        ++ends;
+    };
+    RehearsalRunner runner{test::short_landing(), 7, 0.0, dictionary, pipeline, callbacks};
+    told_of = &runner;
+    CHECK(runner.order(StopRun{}));
+    while (ends == 0) std::this_thread::sleep_for(std::chrono::milliseconds{1});
+    CHECK(ends == 1);
+    CHECK(over_by_then == 1);
+}
+
 TEST_CASE("a kept request comes back from its text, and another text is none", "[rehearsal][archive]") {
     v1::KeptRequest kept;
     kept.mutable_verdict()->set_command(3);

@@ -2,6 +2,7 @@
 #include "server/archive/reader.hpp"
 #include "server/pipeline/derivation.hpp"
 #include "server/pipeline/pipeline.hpp"
+#include "tests/server/reopened_ground.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
 
@@ -40,27 +41,12 @@ dictionary::Dictionary mission() {
     return dictionary;
 }
 
-struct Ground {
-    TemporaryFolder folder;
-    dictionary::Dictionary dictionary = mission();
-    std::filesystem::path file = folder / "a.db";
-    std::optional<Archive> archive;
-    std::optional<Pipeline> pipeline;
-    std::vector<v1::Item> published;
+struct Ground : test::ReopenedGround {
+    Ground() : ReopenedGround(mission()) {}
     /// Behind it stands what the ground makes of it: the situation.
     const v1::Staleness& newest_staleness() const {
         return std::find_if(published.rbegin(), published.rend(), [](const auto& item) { return item.has_staleness(); })
             ->staleness();
-    }
-
-    Ground() { open(); }
-    void open() {
-        pipeline.reset();
-        archive.reset();
-        archive.emplace(std::move(Archive::open(file)).value());
-        pipeline.emplace(*archive, dictionary);
-        pipeline->on_publish(
-            [this](const auto& batch) { published.insert(published.end(), batch->items.begin(), batch->items.end()); });
     }
     void begin() { REQUIRE(pipeline->begin({}).ok()); }
     void fly(std::uint16_t from, std::uint16_t to, float speed_mps) {
@@ -76,7 +62,6 @@ struct Ground {
         REQUIRE(pipeline->commit().ok());
         return std::visit([](const auto& record) { return record.seq; }, *added);
     }
-    Reader reader() const { return std::move(Reader::open(file, dictionary)).value(); }
     std::string stored() const {
         std::string text;
         const auto page = reader().items(first_run, 0, 1000);

@@ -31,7 +31,7 @@ it('an instant has its time on Earth by clock correlation and light time, and no
   expect(earthWords(timesOf(aStore([], aRun())), 0)).toBe('—');
 });
 
-it('a fault was done a light time before anybody could know of it, was seen by its first sign, and then answered', () => {
+it('a fault was done a light time before anybody could know of it, was seen by a sign, and then answered', () => {
   const rows = knownWhen(FAULT, far).map(({ what, e_s, where, words }) => [what, e_s, where, words]);
   expect(rows).toEqual([
     ['done', -50, 'E+0:50.0 at the vehicle', 'radar A silent'],

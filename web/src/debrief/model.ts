@@ -58,8 +58,8 @@ export async function askScores(runs: readonly number[]): Promise<void> {
 // ---- Times ---------------------------------------------------------------------------------------------------------
 
 /**
- * The clocks of a run. An instant is given in seconds from entry of the signal that Earth receives then; what happens at
- * the vehicle is received a light time later.
+ * The clocks of a run. An instant is given by the signal that Earth receives then, in seconds from entry. What happens
+ * at the vehicle is received a light time later.
  */
 export interface Times {
   lightTime_s: number;
@@ -150,7 +150,7 @@ export function knownWhen(fault: ScoreFault, times: Times): KnownRow[] {
   return rows;
 }
 
-/** What could have been seen of a fault by one of its signs. `missed`: it was there, or may have been, and nobody got it. */
+/** What could have been seen of a fault by one of its signs. `missed`: nothing of it was received live. */
 export function signWords(sign: ScoreSign, felt_e_s: number): { words: string; missed: boolean } {
   const { on_board_e_s, heard_e_s } = sign;
   if (heard_e_s !== undefined)

@@ -120,7 +120,7 @@ it('a run that is over has its injects against reactions, missed steps, forks an
   expect(asked().filter((path) => path === '/runs/1/score')).toHaveLength(1);
 });
 
-it('what is hidden while a fork goes on stays hidden, and the page says why; procedures are the room’s own', async () => {
+it('what is hidden while a fork goes on stays hidden, and the page says why; the room has its procedures', async () => {
   const refusal = {
     status: 403,
     json: { error: 'what an instructor does is told when the run and its forks are over' },
