@@ -5,6 +5,8 @@
 #include "server/base/json.hpp"
 #include "server/pipeline/annotations.hpp"
 
+#include <fmt/format.h>
+
 // The routes that add notes and alarm actions to a run of any age. Answered once durable.
 namespace aeolis::server {
 namespace {
@@ -40,11 +42,43 @@ void Api::annotate(const ApiRequest& call, Annotating annotating) {
 void Api::post_note(const ApiRequest& call) {
     v1::NoteRequest wanted;
     if (auto unreadable = read_signed(call, wanted)) return call.respond(std::move(*unreadable));
-    annotate(call, [wanted](archive::Reader&, archive::RunId, Ert now) -> Annotated {
+    const bool plain = wanted.call().empty() && wanted.reads_back() == 0;
+    annotate(call, [this, wanted, plain](archive::Reader& reader, archive::RunId id, Ert now) -> Annotated {
+        if (!plain) return called(wanted, reader, id, now);
         auto note = note_of(wanted, wanted.by(), now);
         if (!note) return error_response(422, note.error());
         return std::move(*note);
     });
+}
+
+/// A standard call, or its read-back: of a run that goes on, and from a position that is no other person's.
+Api::Annotated Api::called(const v1::NoteRequest& wanted, archive::Reader& reader, archive::RunId id, Ert now) {
+    const auto run = reader.run(id);
+    if (!run) return error_response(500, run.error());
+    if (run->state() != v1::RunState::running && run->state() != v1::RunState::paused)
+        return error_response(409, fmt::format("run {} does not go on: calls are made while a run does", id.value));
+    if (!wanted.position().empty())
+        if (const auto may = parts_.pipeline.positions().may_act(wanted.position(), wanted.by()); !may)
+            return error_response(409, may.error());
+    if (wanted.call().empty()) return read_back(wanted, reader, id, now);
+    auto note = call_of(wanted, calls_, wanted.by(), now);
+    if (!note) return error_response(422, note.error());
+    return std::move(*note);
+}
+
+Api::Annotated Api::read_back(const v1::NoteRequest& wanted, archive::Reader& reader, archive::RunId id, Ert now) {
+    const auto page = reader.items(id, wanted.reads_back() - 1, 1);
+    if (!page) return error_response(500, page.error());
+    const auto* item = page->items.empty() ? nullptr : &page->items.front();
+    if (item == nullptr || item->seq() != wanted.reads_back() || !item->has_note() || item->note().call().empty() ||
+        item->note().reads_back() != 0)
+        return error_response(
+            422, fmt::format("reads_back: item {} of run {} is no standard call", wanted.reads_back(), id.value));
+    if (item->note().by() == wanted.by())
+        return error_response(409, fmt::format("{} made this call: another person reads it back", wanted.by()));
+    auto note = read_back_of(wanted, item->note(), wanted.by(), now);
+    if (!note) return error_response(422, note.error());
+    return std::move(*note);
 }
 
 void Api::post_alarm(const ApiRequest& call) {

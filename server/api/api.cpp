@@ -231,8 +231,21 @@ std::span<const Api::Route> Api::routes() {
     return all;
 }
 
+namespace {
+
+/// The standard calls; a list that breaks a rule is told in the log, and there are none.
+procedures::CallList calls_of(const instruction::PlanLibrary& library) {
+    auto calls = library.calls();
+    if (calls) return std::move(*calls);
+    spdlog::error("no standard calls: {}", calls.error().message);
+    return {};
+}
+
+}  // namespace
+
 Api::Api(Parts parts)
-    : parts_(std::move(parts)), dictionary_json_(to_json_by_rows(dictionary_reply(parts_.dictionary), "channels")) {}
+    : parts_(std::move(parts)), calls_(calls_of(parts_.plans)),
+      dictionary_json_(to_json_by_rows(dictionary_reply(parts_.dictionary, calls_), "channels")) {}
 
 void Api::count(const std::string& route, unsigned status) {
     const std::scoped_lock lock{counts_mutex_};

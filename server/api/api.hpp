@@ -153,6 +153,8 @@ class Api {
     using Annotated = std::variant<archive::Annotation, HttpResponse>;  ///< the latter says why not
     using Annotating = std::function<Annotated(archive::Reader&, archive::RunId, Ert now)>;
     void annotate(const ApiRequest& call, Annotating annotating);
+    Annotated called(const v1::NoteRequest& wanted, archive::Reader& reader, archive::RunId id, Ert now);
+    static Annotated read_back(const v1::NoteRequest& wanted, archive::Reader& reader, archive::RunId id, Ert now);
     // procedure_routes.cpp
     void list_procedures(const ApiRequest& call);
     void get_procedure(const ApiRequest& call);
@@ -225,6 +227,7 @@ class Api {
     Respond counted(std::string route, const Respond& respond);
 
     Parts parts_;
+    procedures::CallList calls_;  ///< as they were when the server began
     std::string dictionary_json_;
     CommandRates command_rates_;
     std::mutex counts_mutex_;

@@ -104,8 +104,16 @@ void add_limits(const dictionary::Alarms& alarms, const std::string& context,
     }
 }
 
-v1::DictionaryReply dictionary_reply(const dictionary::Dictionary& dictionary) {
+v1::DictionaryReply dictionary_reply(const dictionary::Dictionary& dictionary, const procedures::CallList& calls) {
     v1::DictionaryReply reply;
+    reply.set_read_back_s(calls.read_back_s);
+    for (const auto& call : calls.calls) {
+        auto& added = *reply.add_calls();
+        added.set_call(call.id);
+        added.set_key(std::string(1, call.key));
+        added.set_says(call.says);
+        added.set_asks(call.asks);
+    }
     reply.set_mission(dictionary.mission);
     reply.set_id(dictionary.id);
     std::map<ChannelId, const dictionary::Packet*> carriers;

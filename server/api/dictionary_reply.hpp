@@ -3,6 +3,7 @@
 
 #include "aeolis/v1/run.pb.h"
 #include "dictionaries/dictionary.hpp"
+#include "server/procedures/call_list.hpp"
 
 #include <string>
 
@@ -12,7 +13,7 @@ namespace aeolis::server {
 void add_limits(const dictionary::Alarms& alarms, const std::string& context,
                 google::protobuf::RepeatedPtrField<v1::AlarmLimit>& limits);
 
-/// The dictionary as the console receives it.
-v1::DictionaryReply dictionary_reply(const dictionary::Dictionary& dictionary);
+/// The dictionary as the console receives it, with the mission's standard calls.
+v1::DictionaryReply dictionary_reply(const dictionary::Dictionary& dictionary, const procedures::CallList& calls);
 
 }  // namespace aeolis::server

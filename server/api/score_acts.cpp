@@ -68,6 +68,12 @@ std::string deed_of(const v1::PositionAct& act) {
     }
 }
 
+/// "wrote “…”", "called “…”".
+std::string deed_of(const v1::Note& note) {
+    if (note.reads_back() != 0) return first_line(note.text());
+    return fmt::format("{} “{}”", note.call().empty() ? "wrote" : "called", first_line(note.text()));
+}
+
 /// Reads the items of a run into ScoreActs.
 class ActReader {
   public:
@@ -154,8 +160,8 @@ class ActReader {
                      command.how == CommandOutcome::How::failed || command.how == CommandOutcome::How::cancelled});
         for (const auto& item : report_.notes())
             if (in_time(item))
-                acts.push_back({Kind::note, e_s_of(item), or_someone(item.note().by()),
-                                fmt::format("wrote “{}”", first_line(item.note().text())), item.note().text()});
+                acts.push_back({Kind::note, e_s_of(item), or_someone(item.note().by()), deed_of(item.note()),
+                                item.note().text(), item.note().reads_back() != 0});
         for (const auto& item : room) {
             if (!in_time(item)) continue;
             if (item.has_procedure_act())

@@ -58,9 +58,10 @@ struct PersonsAct {
     Kind kind = Kind::note;
     double e_s = 0.0;
     std::string by;
-    std::string deed;             ///< "sent NO_OP"
-    std::string about;            ///< the alarm's or the command's name, the note's text; else empty
-    bool without_effect = false;  ///< a command that failed or was cancelled
+    std::string deed;   ///< "sent NO_OP"
+    std::string about;  ///< the alarm's or the command's name, the note's text; else empty
+    /// A command that failed or was cancelled; a line that reads a call back, and says nothing itself.
+    bool without_effect = false;
 
     std::string words() const;  ///< "Ann: sent NO_OP"
     v1::ScoreAct told() const;

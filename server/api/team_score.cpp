@@ -135,7 +135,8 @@ class TeamJudge {
     /// new; and who names every cause has found none.
     bool answers(std::size_t act, const Expectation& expectation) const {
         const auto& note = acts_.acts[act];
-        if (note.kind != PersonsAct::Kind::note || !has_any(note.about, expectation.names)) return false;
+        if (note.kind != PersonsAct::Kind::note || note.without_effect || !has_any(note.about, expectation.names))
+            return false;
         const auto used = used_for_.find(act);
         if (used != used_for_.end() && used->second != judging_) return false;
         const auto before = std::ranges::find(acts_.acts, note.about, &PersonsAct::about);

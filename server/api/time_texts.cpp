@@ -28,6 +28,7 @@ void write_status(v1::ProcedureStatus& status) {
     for (auto& step : *status.mutable_steps()) {
         if (step.has_limit_us()) step.set_limit(text_of(step.limit_us()));
         if (step.has_since_us()) step.set_since(text_of(step.since_us()));
+        if (step.has_limit_passed_us()) step.set_limit_passed(text_of(step.limit_passed_us()));
         if (step.has_over_us()) step.set_over(text_of(step.over_us()));
         for (auto& signature : *step.mutable_signatures()) signature.set_at(text_of(signature.at_us()));
     }

@@ -330,6 +330,9 @@ struct ItemTable<NoteRecord> {
         visit("text", record.text, Column::searched);
         visit("written", record.written);
         visit("sclk", record.sclk_s);
+        visit("call", record.call);
+        visit("position", record.position);
+        visit("reads_back", record.reads_back);
     }
 };
 

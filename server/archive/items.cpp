@@ -229,6 +229,9 @@ v1::Item to_item(const NoteRecord& record) {
     note.set_by(record.by);
     note.set_written(record.written);
     if (record.sclk_s) note.set_sclk(*record.sclk_s);
+    note.set_call(record.call);
+    note.set_position(record.position);
+    note.set_reads_back(record.reads_back);
     return item;
 }
 

@@ -196,6 +196,9 @@ struct NoteRecord : ItemRecord {
     std::string text, by;
     std::string written;  ///< wall clock, ISO 8601
     std::optional<double> sclk_s;
+    std::string call;              ///< the id of a standard call; empty: it is none
+    std::string position;          ///< from which the call is made or read back
+    std::uint64_t reads_back = 0;  ///< the number of the item whose call it reads back; 0: none
 };
 
 enum class ProcedureActKind : std::uint8_t { begin, tick, sign, choose, skip, sent, hold, release, acknowledge, stop };

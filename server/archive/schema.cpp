@@ -184,7 +184,8 @@ CREATE VIEW alarm_action_log AS
 CREATE VIEW shift_log AS
     SELECT n.key >> 40 AS run, n.key & 0xFFFFFFFFFF AS seq,
            strftime('%Y-%jT%H:%M:%f', n.ert_us / 1e6 + 946728000, 'unixepoch') AS at, n.written, n.author, n.sclk,
-           n.sclk - nullif(r.entry_sclk, 0) AS e_s, n.text
+           n.sclk - nullif(r.entry_sclk, 0) AS e_s, n.text, nullif(n.call, '') AS call,
+           nullif(n.position, '') AS position, nullif(n.reads_back, 0) AS reads_back
     FROM notes n JOIN runs r ON r.run = n.key >> 40;
 CREATE VIEW procedure_log AS
     SELECT a.key >> 40 AS run, a.key & 0xFFFFFFFFFF AS seq,
@@ -305,10 +306,11 @@ Result<bool> is_empty(sqlite::Database& database) {
         return of_another_build(database, "was written before the first release, in another layout");
     if (*id != application_id || *version < 1) return not_ours(database);
     if (*version == schema_version) {
-        const auto whole = database.integer_of("SELECT count(*) FROM sqlite_schema WHERE name = 'position_acts'");
+        const auto whole = database.integer_of("SELECT count(*) FROM pragma_table_info('notes')"
+                                               " WHERE name = 'reads_back'");
         if (!whole) return whole.error();
         if (*whole == 0)
-            return of_another_build(database, "was written by a build of before 0.2.0, without the table of positions");
+            return of_another_build(database, "was written by a build of before 0.2.0, without standard calls");
         return false;
     }
     const auto why =

@@ -55,11 +55,16 @@ int plan_check(const PlanOptions& options) {
     const auto files =
         options.files.empty() ? instruction::yaml_files_in(options.shared.dictionary / "plans") : options.files;
     if (files.empty()) return failed(fmt::format("plan check: {} has no plans", options.shared.dictionary.string()), 2);
-    const auto library_text = instruction::PlanLibrary{options.shared.dictionary, *dictionary}.injects_text();
+    const instruction::PlanLibrary shipped{options.shared.dictionary, *dictionary};
+    const auto library_text = shipped.injects_text();
     const auto read_injects = instruction::read_library(library_text, "injects.yaml", *dictionary, {});
     bool sound = library_text.empty() || read_injects.injects.has_value();
     if (!sound)
         for (const auto& finding : read_injects.findings) fmt::print(stderr, "{}\n", finding.text());
+    if (const auto calls = shipped.calls(); !calls) {
+        fmt::print(stderr, "{}\n", calls.error().message);
+        sound = false;
+    }
     const auto library = read_injects.injects.value_or(std::vector<instruction::Inject>{});
     std::vector<std::string> reports;
     for (const auto& file : files) {

@@ -9,6 +9,16 @@
 
 namespace aeolis::server::instruction {
 
+namespace {
+
+std::string lines_of(const std::vector<procedures::TextFinding>& findings) {
+    std::string lines;
+    for (const auto& finding : findings) lines += (lines.empty() ? "" : "\n") + finding.text();
+    return lines;
+}
+
+}  // namespace
+
 Result<std::string> text_of_file(const std::filesystem::path& file) {
     std::error_code error;
     std::ifstream stream{file, std::ios::binary};
@@ -93,9 +103,18 @@ Result<Rubric> PlanLibrary::rubric() const {
     if (!text) return text.error();
     auto read = read_rubric(*text, file.string(), dictionary_);
     if (read.rubric) return std::move(*read.rubric);
-    std::string findings;
-    for (const auto& finding : read.findings) findings += (findings.empty() ? "" : "\n") + finding.text();
-    return Error{findings};
+    return Error{lines_of(read.findings)};
+}
+
+Result<procedures::CallList> PlanLibrary::calls() const {
+    const auto file = folder_ / "calls.yaml";
+    std::error_code error;
+    if (folder_.empty() || !std::filesystem::exists(file, error)) return procedures::CallList{};
+    const auto text = text_of_file(file);
+    if (!text) return text.error();
+    auto read = procedures::read_calls(*text, file.string());
+    if (read.calls) return std::move(*read.calls);
+    return Error{lines_of(read.findings)};
 }
 
 }  // namespace aeolis::server::instruction

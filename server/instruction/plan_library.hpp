@@ -4,14 +4,15 @@
 #include "aeolis/v1/plan.pb.h"
 #include "common/result.hpp"
 #include "server/instruction/plan_reader.hpp"
+#include "server/procedures/call_list.hpp"
 
 #include <filesystem>
 #include <string>
 
 namespace aeolis::server::instruction {
 
-/// What a mission's instructors have in its dictionary's folder: plans in `plans`, the library of injects
-/// `injects.yaml`, and `rubric.yaml`. Read anew for each call.
+/// What a mission has for rehearsals in its dictionary's folder: plans in `plans`, the library of injects
+/// `injects.yaml`, `rubric.yaml`, and the standard calls `calls.yaml`. Read anew for each call.
 class PlanLibrary {
   public:
     /// @param folder  the dictionary's; empty: there is neither. The dictionary must outlive this.
@@ -26,6 +27,8 @@ class PlanLibrary {
     Result<v1::InstructorPlan> plan(const std::string& name) const;
     /// The mission's rubric; the Error says what is wrong with it, or that there is none.
     Result<Rubric> rubric() const;
+    /// The mission's standard calls, none without a file; the Error says what is wrong with it, a line each.
+    Result<procedures::CallList> calls() const;
 
   private:
     std::filesystem::path folder_;

@@ -6,6 +6,7 @@
 #include "server/procedures/position_board.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -26,17 +27,43 @@ Result<void> check_author(const std::string& by) {
     return check_text("by", by, author_octets_max);
 }
 
+Result<void> check_position(const std::string& position) {
+    if (procedures::position_named(position)) return {};
+    std::vector<std::string_view> known;
+    known.reserve(procedures::positions.size());
+    for (const auto each : procedures::positions) known.push_back(procedures::name_of(each));
+    return Error{fmt::format("position: there is no '{}'; positions are {}", position, fmt::join(known, ", "))};
+}
+
+/// "EDL communications: ", or nothing.
+std::string said_by(const std::string& position) {
+    if (position.empty()) return {};
+    std::string words = position;
+    std::ranges::replace(words, '_', ' ');
+    const auto capitals = words.starts_with("edl ") || words == "gnc" ? std::size_t{3} : std::size_t{1};
+    for (std::size_t i = 0; i < capitals; ++i)
+        words[i] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[i])));
+    return words + ": ";
+}
+
+/// A line of the log that is more than its text.
+Result<archive::NoteRecord> said(const v1::NoteRequest& request, std::string words, const std::string& by, Ert now) {
+    if (!request.position().empty())
+        if (auto position = check_position(request.position()); !position) return position.error();
+    v1::NoteRequest line;
+    line.set_text(said_by(request.position()) + std::move(words));
+    if (request.has_sclk()) line.set_sclk(request.sclk());
+    auto note = note_of(line, by, now);
+    if (note) note->position = request.position();
+    return note;
+}
+
 /// What all acts on procedures and positions have.
 template <typename Record>
 Result<Record> act_by(const std::string& position, const std::string& by, Ert now) {
     if (auto author = check_author(by); !author) return author.error();
     if (auto fits = check_text("by", by, procedures::person_octets_max); !fits) return fits.error();
-    if (!procedures::position_named(position)) {
-        std::vector<std::string_view> known;
-        known.reserve(procedures::positions.size());
-        for (const auto each : procedures::positions) known.push_back(procedures::name_of(each));
-        return Error{fmt::format("position: there is no '{}'; positions are {}", position, fmt::join(known, ", "))};
-    }
+    if (auto known = check_position(position); !known) return known.error();
     Record act;
     act.position = position;
     act.by = by;
@@ -125,6 +152,7 @@ Result<void> check_note(const std::string& text, const std::string& by) {
 
 Result<archive::NoteRecord> note_of(const v1::NoteRequest& request, const std::string& by, Ert now) {
     if (auto checked = check_note(request.text(), by); !checked) return checked.error();
+    if (!request.position().empty()) return Error{"position: is for standard calls and their read-backs"};
     archive::NoteRecord note;
     if (request.has_sclk()) {
         if (!std::isfinite(request.sclk())) return Error{"sclk: not a number of seconds"};
@@ -134,6 +162,36 @@ Result<archive::NoteRecord> note_of(const v1::NoteRequest& request, const std::s
     note.by = by;
     note.ert = now;
     note.written = wall_clock_text();
+    return note;
+}
+
+Result<archive::NoteRecord> call_of(const v1::NoteRequest& request, const procedures::CallList& calls,
+                                    const std::string& by, Ert now) {
+    if (request.reads_back() != 0) return Error{"reads_back: a line makes a call or reads one back, not both"};
+    const auto* call = calls.call(request.call());
+    if (call == nullptr) {
+        std::vector<std::string_view> known;
+        for (const auto& each : calls.calls) known.push_back(each.id);
+        return Error{known.empty()
+                         ? fmt::format("call: the mission has no standard calls, so no '{}'", request.call())
+                         : fmt::format("call: there is no '{}'; calls are {}", request.call(), fmt::join(known, ", "))};
+    }
+    const bool blank = request.text().find_first_not_of(" \t\r\n") == std::string::npos;
+    if (call->asks.empty() && !request.text().empty())
+        return Error{fmt::format("text: the call {} says all by itself", call->id)};
+    if (!call->asks.empty() && blank) return Error{fmt::format("text: {}?", call->asks)};
+    auto note = said(request, call->says + (call->asks.empty() ? "" : ": " + request.text()), by, now);
+    if (note) note->call = call->id;
+    return note;
+}
+
+Result<archive::NoteRecord> read_back_of(const v1::NoteRequest& request, const v1::Note& called, const std::string& by,
+                                         Ert now) {
+    if (!request.text().empty()) return Error{"text: what is read back is the call's"};
+    auto note = said(request, fmt::format("reads back “{}”", called.text()), by, now);
+    if (!note) return note;
+    note->call = called.call();
+    note->reads_back = request.reads_back();
     return note;
 }
 

@@ -8,6 +8,7 @@
 #include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"
 #include "server/archive/records.hpp"
+#include "server/procedures/call_list.hpp"
 #include "telemetry/alarm_register.hpp"
 
 #include <span>
@@ -27,6 +28,13 @@ Result<void> check_note(const std::string& text, const std::string& by);
 /// @param by   the author
 /// @param now  time on Earth by the run's clock
 Result<archive::NoteRecord> note_of(const v1::NoteRequest& request, const std::string& by, Ert now);
+/// Makes the record of a standard call: the position, what it says, and what is given with it.
+Result<archive::NoteRecord> call_of(const v1::NoteRequest& request, const procedures::CallList& calls,
+                                    const std::string& by, Ert now);
+/// Makes the record of a line that reads a call back.
+/// @param called  the call
+Result<archive::NoteRecord> read_back_of(const v1::NoteRequest& request, const v1::Note& called, const std::string& by,
+                                         Ert now);
 /// Makes an alarm action record.
 /// @param links  names of the links in the archive: each may be an alarm
 Result<archive::AlarmActionRecord> alarm_action_of(const v1::AlarmRequest& request,

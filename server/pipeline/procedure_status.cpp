@@ -86,6 +86,7 @@ class Writer {
     void write(v1::ProcedureStep& written, const Step& step, const StepStatus& status) const {
         written.set_state(wire(status.state));
         if (status.active_since) written.set_since_us(status.active_since->microseconds);
+        if (status.late_since) written.set_limit_passed_us(status.late_since->microseconds);
         if (status.over_since) written.set_over_us(status.over_since->microseconds);
         write(*written.mutable_conditions(), step.conditions, status.conditions);
         const bool open = status.active_since && !is_over(status.state);

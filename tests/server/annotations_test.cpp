@@ -75,4 +75,66 @@ TEST_CASE("a note is kept as it was written, and refused when it is empty, too l
     CHECK_THAT(refusal_of_note("chute", std::string(101, 'x')), Catch::StartsWith("by: 101 octets"));
 }
 
+namespace {
+
+procedures::CallList calls() {
+    return {20.0, {{"parachute_seen", 'p', "Parachute seen", ""}, {"tone_heard", 't', "Tone heard", "which tone"}}};
+}
+v1::NoteRequest call(const char* id, const char* position = "", const char* text = "") {
+    v1::NoteRequest asked;
+    asked.set_call(id);
+    asked.set_position(position);
+    asked.set_text(text);
+    return asked;
+}
+std::string refusal_of_call(const v1::NoteRequest& asked, const procedures::CallList& of = calls()) {
+    const auto note = call_of(asked, of, "Ada", Ert{});
+    return note ? "" : note.error().message;
+}
+
+}  // namespace
+
+TEST_CASE("a standard call is a line of the log that its position says, and another line reads it back",
+          "[notes][calls][R59]") {
+    const auto note = call_of(call("parachute_seen", "edl_communications"), calls(), "Ada", Ert{7});
+    REQUIRE(note);
+    CHECK(note->text == "EDL communications: Parachute seen");
+    CHECK(note->call == "parachute_seen");
+    CHECK(note->position == "edl_communications");
+    CHECK(note->reads_back == 0);
+    CHECK(note->by == "Ada");
+    CHECK(note->ert == Ert{7});
+    CHECK(call_of(call("tone_heard", "gnc", "165"), calls(), "Ada", Ert{})->text == "GNC: Tone heard: 165");
+    CHECK(call_of(call("parachute_seen"), calls(), "Ada", Ert{})->text == "Parachute seen");
+    v1::NoteRequest wanted;
+    wanted.set_reads_back(12);
+    wanted.set_position("relay_and_station");
+    v1::Note called;
+    called.set_text(note->text);
+    called.set_call(note->call);
+    const auto read_back = read_back_of(wanted, called, "Bob", Ert{9});
+    REQUIRE(read_back);
+    CHECK(read_back->text == "Relay and station: reads back “EDL communications: Parachute seen”");
+    CHECK(read_back->call == "parachute_seen");
+    CHECK(read_back->position == "relay_and_station");
+    CHECK(read_back->reads_back == 12);
+}
+
+TEST_CASE("a call that there is not, or that lacks what it asks for, is refused by its field", "[notes][calls][R59]") {
+    CHECK(refusal_of_call(call("chute")) == "call: there is no 'chute'; calls are parachute_seen, tone_heard");
+    CHECK(refusal_of_call(call("chute"), {}) == "call: the mission has no standard calls, so no 'chute'");
+    CHECK(refusal_of_call(call("tone_heard", "", " ")) == "text: which tone?");
+    CHECK(refusal_of_call(call("parachute_seen", "", "well")) == "text: the call parachute_seen says all by itself");
+    CHECK_THAT(refusal_of_call(call("parachute_seen", "captain")),
+               Catch::StartsWith("position: there is no 'captain'"));
+    auto both = call("parachute_seen");
+    both.set_reads_back(3);
+    CHECK_THAT(refusal_of_call(both), Catch::StartsWith("reads_back: "));
+    auto plain = call("", "gnc", "a note");
+    CHECK_THAT(note_of(plain, "Ada", Ert{}).error().message, Catch::StartsWith("position: is for"));
+    auto words = call("", "", "well");
+    words.set_reads_back(3);
+    CHECK_THAT(read_back_of(words, {}, "Ada", Ert{}).error().message, Catch::StartsWith("text: "));
+}
+
 }  // namespace server_annotations_test

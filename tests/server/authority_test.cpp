@@ -9,6 +9,8 @@
 #include <fstream>
 #include <map>
 #include <set>
+#include <string_view>
+#include <thread>
 
 namespace server_authority_test {
 
@@ -644,6 +646,54 @@ TEST_CASE("with positions a command needs the account that holds command, and th
         }
         CHECK_THAT(told, Catch::Contains("command is held by controller, not by instructor"));
     }
+}
+
+TEST_CASE("a standard call is made from a position that is nobody else's, and another person reads it back",
+          "[access][calls][R59]") {
+    Guarded guarded;
+    CHECK_THAT(guarded.ask("observer", "GET", "/api/v1/dictionary").body,
+               Catch::Contains(R"({"call":"parachute_seen","key":"p","says":"Parachute seen","asks":""})"));
+    REQUIRE(guarded.ask("director", "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})").status == 201);
+    const auto say = [&](const char* role, const std::string& body) {
+        return guarded.ask(role, "POST", "/api/v1/runs/latest/notes", body);
+    };
+    const auto read_back = [&](const char* role, const std::string& seq) {
+        return say(role, R"({"position":"relay_and_station","reads_back":")" + seq + R"("})");
+    };
+    const auto seq_of = [](const WebReply& reply) {
+        constexpr std::string_view begin = R"("seq":")";
+        const auto at = reply.body.find(begin) + begin.size();
+        return reply.body.substr(at, reply.body.find('"', at) - at);
+    };
+    const char* const parachute = R"({"call":"parachute_seen","position":"edl_communications"})";
+    CHECK(say("observer", parachute).status == 403);
+    const auto made = say("controller", parachute);
+    REQUIRE(made.status == 201);
+    CHECK_THAT(made.body, Catch::Contains(R"("text":"EDL communications: Parachute seen")") &&
+                              Catch::Contains(R"("call":"parachute_seen")"));
+    const auto own = read_back("controller", seq_of(made));
+    CHECK(own.status == 409);
+    CHECK_THAT(own.body, Catch::Contains("another person reads it back"));
+    const auto heard = read_back("director", seq_of(made));
+    REQUIRE(heard.status == 201);
+    CHECK_THAT(heard.body, Catch::Contains("Relay and station: reads back “EDL communications: Parachute seen”") &&
+                               Catch::Contains(R"("reads_back":")" + seq_of(made)));
+    CHECK(read_back("controller", seq_of(heard)).status == 422);  // no call itself
+    CHECK(read_back("controller", "1000000").status == 422);
+    CHECK(say("controller", R"({"call":"tone_heard"})").status == 422);  // which one?
+    CHECK(say("controller", R"({"call":"chute"})").status == 422);
+    REQUIRE(guarded
+                .ask("instructor", "POST", "/api/v1/runs/latest/positions",
+                     R"({"kind":"take","position":"edl_communications"})")
+                .status == 201);
+    const auto of_another = say("controller", parachute);
+    CHECK(of_another.status == 409);
+    CHECK_THAT(of_another.body, Catch::Contains("edl_communications is held by instructor"));
+    REQUIRE(guarded.ask("director", "POST", "/api/v1/rehearsals/current", R"({"stop":true})").status == 202);
+    for (int i = 0; i < 500 && say("instructor", parachute).status == 201; ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds{20});
+    CHECK_THAT(say("instructor", parachute).body, Catch::Contains("calls are made while a run does"));
+    CHECK(say("instructor", R"({"text":"a note of the day after"})").status == 201);
 }
 
 TEST_CASE("what was done, by whom and with what outcome, is in the audit, and no password is", "[access][audit]") {

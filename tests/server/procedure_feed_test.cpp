@@ -141,7 +141,8 @@ std::vector<Input> any_inputs(unsigned seed) {
             break;
         case 4: {
             if (any(12) == 0) {
-                inputs.emplace_back(archive::NoteRecord{{0, Ert{now_us}}, "a note", "Ada", "2026-11-22T12:00:00Z", {}});
+                inputs.emplace_back(
+                    archive::NoteRecord{{0, Ert{now_us}}, "a note", "Ada", "2026-11-22T12:00:00Z", {}, {}, {}, 0});
                 break;
             }
             static constexpr std::array steps{"", "fast", "deployed", "sure", "high", "none"};
@@ -217,6 +218,9 @@ TEST_CASE("a step checks itself by what is received, which its status tells with
     CHECK(ground.told().back() == "1 confirmation checked checked active");
     REQUIRE(ground.take(act(ProcedureActKind::tick, 1, 15 * second_us, "sure")).empty());
     CHECK(ground.told().back() == "1 confirmed checked checked ticked");
+    const auto over = ground.reader().procedures(first_run)->front().procedure();
+    CHECK(over.steps(0).limit_passed_us() == 11 * second_us);  // that it was late stays
+    CHECK_FALSE(over.steps(1).has_limit_passed_us());
     const auto before = ground.told().size();
     for (std::uint16_t second = 16; second < 40; ++second) {
         ground.hear(second, second * second_us, 400.0F + second);

@@ -2,9 +2,12 @@
 #include "server/api/rehearsal_score.hpp"
 
 #include "server/archive/items.hpp"
+#include "server/instruction/plan_library.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace server_rehearsal_score_test {
@@ -371,6 +374,40 @@ TEST_CASE("acts on procedures and positions are told in words, and show that som
                         "Bob called a poll: do edl", "Bob said no go as gnc"});
     CHECK(points(judged, "action") ==
           Texts{"sends no command for 60 s: 100, nothing was sent; somebody was there: Ann: began procedure start 2"});
+}
+
+TEST_CASE("each call that the shipped rubric wants in the log is one of the standard calls, and no read-back is it",
+          "[score][calls][R59]") {
+    const auto& dictionary = tests::shipped_dictionary();
+    const instruction::PlanLibrary library{AEOLIS_SOURCE_DIR "/dictionaries/msl", dictionary};
+    const auto shipped = library.rubric();
+    const auto calls = library.calls();
+    REQUIRE(shipped);
+    REQUIRE(calls);
+    CHECK(shipped->calls.size() >= 3);
+    for (const auto& wanted : shipped->calls) {
+        const auto share_of = [&](const std::string& text, std::uint64_t reads_back) {
+            auto facts = ended();
+            auto heard = item_at(12.0);
+            heard.mutable_event()->set_name(wanted.after);
+            heard.mutable_event()->set_source(v1::SOURCE_REALTIME);
+            facts.heard = {heard};
+            auto note = item_at(14.0);
+            note.mutable_note()->set_text(text);
+            note.mutable_note()->set_call("c");
+            note.mutable_note()->set_reads_back(reads_back);
+            note.mutable_note()->set_by("Bob");
+            *facts.report.add_notes() = note;
+            const auto judged = server::score_of(facts, dictionary, *shipped);
+            REQUIRE(term(judged, "communication") != nullptr);
+            return term(judged, "communication")->judged(0).share();
+        };
+        INFO(wanted.after);
+        const auto says = std::ranges::find_if(
+            calls->calls, [&](const auto& call) { return share_of("EDL communications: " + call.says, 0) == 1.0; });
+        REQUIRE(says != calls->calls.end());
+        CHECK(share_of("reads back “" + says->says + "”", 7) == 0.0);
+    }
 }
 
 TEST_CASE("calls are judged from when what they are of was heard live, and those of what nobody heard are not",

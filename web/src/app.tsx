@@ -3,6 +3,7 @@
 import type { FunctionComponent } from 'preact';
 import { access } from './access/model';
 import { reportState } from './anomaly/opened';
+import { callsShown } from './calls/opened';
 import { Channels } from './channels/view';
 import { Header } from './clocks/view';
 import { step } from './commands/line';
@@ -52,6 +53,7 @@ const DATA = {
   vehicle: openedLater(async () => (await import('./vehicle/view')).Vehicle),
 };
 
+const Calls = openedLater(async () => (await import('./calls/view')).Calls);
 const Debrief = openedLater(async () => (await import('./debrief/view')).Debrief);
 
 function Data() {
@@ -189,6 +191,7 @@ export function App({ panel }: { panel?: string | undefined }) {
         <PastBar />
         <ReplayBar />
         <Notices />
+        {callsShown() && <Calls />}
       </div>
       {['out', 'choose'].includes(access.value.state) && !run ? (
         <LogIn />

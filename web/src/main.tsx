@@ -3,6 +3,7 @@ import { effect } from '@preact/signals';
 import { render } from 'preact';
 import { access } from './access/model';
 import { App } from './app';
+import { callsReady } from './calls/opened';
 import { startLoop } from './draw/loop';
 import { listenForMenus } from './menu/model';
 import { printLight } from './design/print';
@@ -56,5 +57,5 @@ const known = new Promise<void>(
 const root = document.getElementById('console');
 const typeThere = Promise.all(['Inter', 'JetBrains Mono'].map((family) => document.fonts.load(`16px "${family}"`)));
 await Promise.race([Promise.all([known, typeThere]), new Promise((resolve) => setTimeout(resolve, EMPTY_MS))]);
-setTimeout(() => void loadSoon(), SOON_MS);
+setTimeout(() => void loadSoon().then(() => (callsReady.value = true)), SOON_MS);
 if (root) render(<App panel={opened.picture.panel} />, root);

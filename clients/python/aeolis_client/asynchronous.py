@@ -162,6 +162,18 @@ class AsyncClient:
         body = {"text": text, "by": by, **({} if sclk is None else {"sclk": sclk})}
         return await self._ask("Item", "POST", f"/runs/{run}/notes", body)
 
+    async def make_call(
+        self, call: str, *, run: Run = "latest", by: str = "", position: str = "", text: str = ""
+    ) -> Any:
+        """Makes a standard call, by its id in the dictionary; returns its item. @param text what the call asks for"""
+        body = {"call": call, "by": by, "position": position, "text": text}
+        return await self._ask("Item", "POST", f"/runs/{run}/notes", body)
+
+    async def read_back(self, call: int, *, run: Run = "latest", by: str = "", position: str = "") -> Any:
+        """Reads back the standard call in the item of that number, made by another person; returns the item."""
+        body = {"reads_back": call, "by": by, "position": position}
+        return await self._ask("Item", "POST", f"/runs/{run}/notes", body)
+
     def procedures(self) -> AsyncIterator[Any]:
         """The mission's procedures, ProcedureEntry by id; one with findings cannot be begun."""
         return self._pages("ProcedureList", "/procedures", {})

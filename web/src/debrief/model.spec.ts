@@ -104,10 +104,10 @@ it('skipped, late and unfinished steps are missed, and what was not reached is t
       aStep('send', {
         state: 'checked',
         limits: 'within 20 s',
-        limit_us: us('2012-219T05:02:00.0'),
+        limit_passed_us: us('2012-219T05:02:00.0'),
         over_us: us('2012-219T05:02:15.0'),
       }),
-      aStep('wait', { state: 'late', limits: 'within 5 s', limit_us: us('2012-219T05:02:20.0') }),
+      aStep('wait', { state: 'late', limits: 'within 5 s', limit_passed_us: us('2012-219T05:02:20.0') }),
       aStep('end'),
     ],
     watchdogs: [

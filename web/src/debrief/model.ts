@@ -2,6 +2,7 @@
 // The debrief of a run that is over: what the server knows of injects, signs, acts, procedures and forks, put side by
 // side. Nothing is judged here: points, first signs and first acts are the server's.
 import { signal } from '@preact/signals';
+import { refreshNotes } from '../notes/model';
 import { askInterventions } from '../rehearsal/instructor';
 import type { Intervention } from '../rehearsal/instructor';
 import { askPlan, titleOf } from '../rehearsal/plan';
@@ -35,6 +36,7 @@ export async function askDebrief(run: RunStore): Promise<void> {
     or(askPlan(run).then(() => '')),
     or(read<{ procedures: { procedure: Execution }[] }>(`/runs/${run.id}/procedures`)),
   ]);
+  await refreshNotes();
   if (store.value !== run) return;
   debrief.value = {
     run: run.id,
@@ -227,14 +229,11 @@ export interface Missed {
 const WAITS = ['held', 'active', 'late'] as const;
 const waits = ({ state }: Step) => (WAITS as readonly string[]).includes(state);
 
-/** Its limit and when it was over, where that was later; of a command's step the limit is of another instant. */
-function lateWords(step: Step, times: Times): string | undefined {
-  if (step.limit_us === undefined || step.command) return undefined;
-  const limit_s = times.ofErt(step.limit_us);
-  const passed = `its time limit passed at ${at(limit_s)} (${step.limits})`;
-  if (step.over_us === undefined) return step.state === 'late' ? passed : undefined;
+function lateWords(step: Step, times: Times): string {
+  const limit_s = times.ofErt(step.limit_passed_us as string);
+  if (step.over_us === undefined || waits(step)) return `its time limit passed at ${at(limit_s)} (${step.limits})`;
   const over_s = times.ofErt(step.over_us);
-  return over_s > limit_s ? `${passed}; over at ${at(over_s)}, ${later(limit_s, over_s)}` : undefined;
+  return `its time limit passed at ${at(limit_s)} (${step.limits}); over at ${at(over_s)}, ${later(limit_s, over_s)}`;
 }
 
 /** What of a procedure was missed, in the order of its steps. A step whose turn had not come is in `notReached`. */
@@ -244,8 +243,7 @@ export function missedOf(one: Execution, times: Times): { missed: Missed[]; notR
     const { step: id, who, text } = step;
     const say = (what: Missed['what'], words: string) => missed.push({ what, step: id, who, text, words });
     if (step.state === 'skipped') say('skipped', `by ${step.by || 'someone'}: ${step.reason || 'without a reason'}`);
-    const late = lateWords(step, times);
-    if (late) say('late', late);
+    if (step.limit_passed_us !== undefined) say('late', lateWords(step, times));
     if (waits(step)) say('not done', one.over ? 'when the procedure was over' : 'when the run ended');
   }
   for (const dog of one.watchdogs)

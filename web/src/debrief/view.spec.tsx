@@ -5,10 +5,11 @@ import { render } from 'preact';
 import { act } from 'preact/test-utils';
 import { beforeEach, expect, it, vi } from 'vitest';
 import { ForkOriginSchema } from '../gen/aeolis/v1/run_pb';
+import { notes } from '../notes/model';
 import type { Score } from '../rehearsal/score';
 import { useForTest } from '../run/session';
 import { runs } from '../run/shown';
-import { aDictionary, aRun, aStore } from '../testing/fixtures';
+import { aDictionary, aRun, aStore, ertUs } from '../testing/fixtures';
 import { aStep, anExecution, inItem } from '../testing/procedures';
 import { aServer } from '../testing/server';
 import { debrief, scoresOfForks } from './model';
@@ -16,7 +17,7 @@ import { Debrief } from './view';
 
 const server = aServer();
 beforeEach(() => {
-  debrief.value = undefined;
+  notes.value = debrief.value = undefined;
   scoresOfForks.value = new Map();
   runs.value = [];
 });
@@ -87,6 +88,14 @@ it('a run that is over has its injects against reactions, missed steps, forks an
   server.routes['GET /runs/1/plan'] = { json: PLAN };
   const skipped = anExecution({ steps: [aStep('look', { state: 'skipped', by: 'Ann', reason: 'no time' })] });
   server.routes['GET /runs/1/procedures'] = { json: { procedures: [inItem(skipped)] } };
+  const note = (seq: string, text: string, reads_back: string) => ({
+    seq,
+    ert_us: String(ertUs('2012-219T05:01:50.0')),
+    note: { text, by: 'Bob', call: 'seen', reads_back },
+  });
+  server.routes['GET /runs/1/notes'] = {
+    json: { notes: [note('4', 'GNC: Seen', '0'), note('5', 'Lost', '0'), note('6', 'reads back', '4')] },
+  };
   const forkedFrom = create(ForkOriginSchema, { run: 1n, eS: 20 });
   runs.value = [
     aRun({ run: 3n, state: 'running', forkedFrom: { ...forkedFrom, run: 7n } }),
@@ -108,6 +117,8 @@ it('a run that is over has its injects against reactions, missed steps, forks an
     ['received', 'touchdown'],
   ]);
   expect(part(root, 'procedures')?.textContent).toContain('by Ann: no time');
+  expect(part(root, 'calls')?.textContent).toContain('2 calls were made, 1 of them not read back');
+  expect(part(root, 'calls')?.textContent).toContain('Bob Lost');
   expect([...root.querySelectorAll('[data-fork]')].map((row) => row.getAttribute('data-fork'))).toEqual(['2']);
   await vi.waitFor(() => expect(part(root, 'forks')?.textContent).toContain('lost88 of 100'));
   expect(part(root, 'forks')?.querySelector('a')?.getAttribute('href')).toBe('?panel=debrief&run=2');
@@ -127,6 +138,7 @@ it('what is hidden while a fork goes on stays hidden, and the page says why; the
   };
   for (const what of ['score', 'interventions', 'plan']) server.routes[`GET /runs/1/${what}`] = refusal;
   server.routes['GET /runs/1/procedures'] = { json: { procedures: [] } };
+  server.routes['GET /runs/1/notes'] = { json: { notes: [] } };
   const root = await shown();
   expect(part(root, 'no-score')?.textContent).toContain('is told when the run and its forks are over');
   expect([part(root, 'faults'), part(root, 'timeline'), part(root, 'score')]).toEqual([null, null, null]);
@@ -138,6 +150,7 @@ it('a run without a plan has a debrief too, and one that goes on has none', asyn
   server.routes['GET /runs/1/interventions'] = { json: {} };
   server.routes['GET /runs/1/plan'] = { json: { ...PLAN, name: '', injects: [] } };
   server.routes['GET /runs/1/procedures'] = { json: { procedures: [] } };
+  server.routes['GET /runs/1/notes'] = { json: { notes: [] } };
   const root = await shown();
   expect(part(root, 'faults')?.textContent).toContain('Nothing was injected.');
   expect(part(root, 'timeline')?.textContent).toContain('Nobody acknowledged, wrote, sent or signed anything');

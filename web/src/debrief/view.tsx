@@ -3,9 +3,11 @@
 // when, what could have been seen, missed steps, forks, and the score with its evidence.
 import type { ComponentChildren } from 'preact';
 import { useEffect } from 'preact/hooks';
+import { callsOf } from '../calls/model';
 import { outcomeWords } from '../clocks/model';
 import { STATUS } from '../design/status';
 import type { Status } from '../design/status';
+import { notes } from '../notes/model';
 import { byWords, positionWords } from '../procedures/position';
 import type { Execution } from '../procedures/model';
 import { planOf } from '../rehearsal/plan';
@@ -288,6 +290,36 @@ function Procedures({ of, times }: { of: readonly Execution[] | string; times: T
   );
 }
 
+// ---- Calls ---------------------------------------------------------------------------------------------------------
+
+/** Standard calls that nobody read back. Those of the time after the run are none of it: no call can be made then. */
+function CallsPart({ run, times }: { run: RunStore; times: Times }) {
+  const all = notes.value?.run === run.id ? callsOf(notes.value.all) : [];
+  const open = all.filter(({ readBack }) => !readBack);
+  return (
+    <Part name="calls" title="Standard calls">
+      {all.length === 0 ? (
+        <None>No standard call was made.</None>
+      ) : (
+        <p>
+          {all.length} {all.length === 1 ? 'call was' : 'calls were'} made, {open.length} of them not read back
+          {open.length > 0 && ':'}
+        </p>
+      )}
+      <ul class="debrief-lines">
+        {open.map(({ made }) => (
+          <li key={made.seq}>
+            <Mark of="missing" word="" />
+            <span>
+              {at(times.ofSeconds(made.ert_s))} <b>{made.by}</b> {made.text}
+            </span>
+          </li>
+        ))}
+      </ul>
+    </Part>
+  );
+}
+
 // ---- Forks ---------------------------------------------------------------------------------------------------------
 
 const toDebrief = (run: bigint | number) => `?panel=debrief&run=${run}`;
@@ -447,6 +479,7 @@ function Known({ run }: { run: RunStore }) {
         </>
       )}
       <Procedures of={procedures} times={times} />
+      <CallsPart run={run} times={times} />
       <Forks run={run} />
       {typeof score !== 'string' && <ScorePart score={score} />}
     </>

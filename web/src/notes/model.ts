@@ -8,15 +8,21 @@ import { store } from '../run/shown';
 import type { RunStore } from '../run/store';
 import { secondsOfErt } from '../run/time';
 
-interface NoteRow {
+export interface NoteRow {
   seq: number;
   text: string;
   by: string;
   ert_s: number;
   sclk: number | undefined;
+  call: string; // of a standard call its id; empty: it is none
+  readsBack: number; // the call that it reads back, by its number; 0: none
 }
 interface NoteList {
-  notes?: { seq: string; ert_us: string; note: { text: string; by?: string; sclk?: number } }[];
+  notes?: {
+    seq: string;
+    ert_us: string;
+    note: { text: string; by?: string; sclk?: number; call?: string; reads_back?: string };
+  }[];
   next_after?: string | number;
 }
 
@@ -47,6 +53,8 @@ export async function refreshNotes(): Promise<void> {
             by: note.by ?? '',
             ert_s: secondsOfErt(ert_us),
             sclk: note.sclk,
+            call: note.call ?? '',
+            readsBack: Number(note.reads_back ?? 0),
           });
       }
       after = Number(list.next_after ?? 0);

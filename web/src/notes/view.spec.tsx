@@ -44,6 +44,8 @@ describe('notes', () => {
       by: 'Ann',
       ert_s: secondsOfDayOfYear(at),
       sclk: undefined,
+      call: '',
+      readsBack: 0,
     });
     const all = [row(1, 'radar late', '2012-219T04:58:00.0'), row(2, 'radar fine', '2012-219T04:59:30.0')];
     const run = aStore();
@@ -68,7 +70,8 @@ describe('notes', () => {
     expect([await write('x', undefined), problem.value]).toEqual([false, 'it was not written down: log in']);
   });
   it('are text, whatever stands in them', () => {
-    notes.value = { run: 1, all: [{ seq: 1, text: '<img src=x onerror=alert(1)>', by: '<b>', ert_s: 0, sclk: 1000 }] };
+    const text = '<img src=x onerror=alert(1)>';
+    notes.value = { run: 1, all: [{ seq: 1, text, by: '<b>', ert_s: 0, sclk: 1000, call: '', readsBack: 0 }] };
     const root = document.createElement('div');
     act(() => render(<Notes />, root));
     expect(root.querySelector('img')).toBeNull();
@@ -77,7 +80,7 @@ describe('notes', () => {
   });
   it('of several lines are folded to their first; a search opens them', () => {
     const text = 'Anomaly report: radar late\nAt E+4:58.0\nAlarms: none is raised';
-    notes.value = { run: 1, all: [{ seq: 1, text, by: 'Ann', ert_s: 0, sclk: 1000 }] };
+    notes.value = { run: 1, all: [{ seq: 1, text, by: 'Ann', ert_s: 0, sclk: 1000, call: '', readsBack: 0 }] };
     const root = document.body.appendChild(document.createElement('div'));
     act(() => render(<Notes />, root));
     const folded = () => root.querySelector('details')!;

@@ -3,8 +3,10 @@
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import { mayAct } from '../access/model';
+import { callsOf, readBackWithin, readBackWords } from '../calls/model';
 import { Signature } from '../commands/signature';
 import { Foot } from '../design/foot';
+import { STATUS } from '../design/status';
 import { cutoff, pastRange, runNow } from '../run/shown';
 import { dayOfYear, fromEntry } from '../run/time';
 import { found, notes, problem, refreshNotes, write, writing } from './model';
@@ -33,6 +35,19 @@ function Text({ text, isOpen }: { text: string; isOpen: boolean }) {
   );
 }
 
+const LOOKS = { done: STATUS.holds, waits: STATUS.next, late: STATUS.missing } as const;
+
+/** Of a standard call: who read it back, or that nobody has. */
+function ReadBack({ of }: { of: ReturnType<typeof readBackWords> | undefined }) {
+  if (!of) return null;
+  const { shape, token } = LOOKS[of.state];
+  return (
+    <span class={`status-${token}`} data-read-back={of.state}>
+      {shape} {of.words}
+    </span>
+  );
+}
+
 export function Notes() {
   const run = runNow();
   const id = run?.id;
@@ -46,6 +61,13 @@ export function Notes() {
   const all = notes.value?.run === run.id ? notes.value.all : [];
   const shown = found(all, search.value, run, cutoff.value);
   const instant = Math.min(run.seenSclk, cutoff.value);
+  const known = all.filter(({ ert_s }) => run.knownBy(ert_s, cutoff.value));
+  const calls = new Map(callsOf(known).map((call) => [call.made.seq, call]));
+  const now_s = cutoff.value === Infinity ? run.ertNow_s : run.ertOf(cutoff.value);
+  const readBackOf = (seq: number) => {
+    const call = calls.get(seq);
+    return call && readBackWords(call, now_s, readBackWithin(), !run.going && cutoff.value === Infinity);
+  };
   return (
     <div class="table-box" data-testid="notes">
       <form
@@ -107,6 +129,7 @@ export function Notes() {
           >
             <time>{dayOfYear(row.ert_s, 3)}</time> <b>{row.by || 'unsigned'}</b>{' '}
             {row.sclk !== undefined && <i>on {fromEntry(row.sclk - run.entrySclk)}</i>}
+            <ReadBack of={readBackOf(row.seq)} />
             <Text text={row.text} isOpen={search.value.trim() !== ''} />
           </li>
         ))}

@@ -52,6 +52,7 @@ export interface Step {
   hold: string;
   limits: string;
   limit_us?: string;
+  limit_passed_us?: string; // it was late, and stays so
   since_us?: string;
   over_us?: string;
   conditions: Condition[];

@@ -2,6 +2,7 @@
 // The keys in one table, used by both the help and the page.
 import { signal } from '@preact/signals';
 import { leaveReport, openReport } from '../anomaly/opened';
+import { askCalls } from '../calls/opened';
 import { TABS, bringUp, closeFull, full, placeOf, toggleFull } from '../places/model';
 import type { Tab } from '../places/model';
 import { backFile, stage } from '../commands/file';
@@ -126,6 +127,8 @@ export const SHORTCUTS: Shortcut[] = [
     act: () => document.querySelector<HTMLElement>('[data-testid="event-search"]')?.focus(),
   },
   ...TABS.map(({ id, key, words }) => ({ keys: [key], shown: key, words, act: () => focusPanel(id) })),
+  { keys: ['7'], shown: '7', words: 'standard calls: then one key each', act: () => askCalls('list') },
+  { keys: ['6'], shown: '6', words: 'read back the newest call of another', act: () => askCalls('read back') },
   { keys: ['!'], shown: '!', words: 'anomaly report: what is on the screen, into the shift log', act: openReport },
   { keys: ['i'], shown: 'i', words: 'values: ↑ ↓ ← → from one to the next, Enter opens its menu', act: focusValue },
   { keys: ['z'], shown: 'z', words: 'full size: the panel in focus, or under the mouse; again: back', act: zoomPanel },
