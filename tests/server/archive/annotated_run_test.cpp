@@ -28,7 +28,7 @@ namespace {
 constexpr RunId first_run{1};
 
 archive::NoteRecord note(std::string text) {
-    return {{0, Ert{7}}, std::move(text), "Ada", "2026-11-22T12:00:00Z", {}};
+    return {{0, Ert{7}}, std::move(text), "Ada", "2026-11-22T12:00:00Z", {}, {}, {}, 0};
 }
 archive::AlarmActionRecord action(std::string alarm, telemetry::AlarmAct what, std::int64_t at_s,
                                   std::int64_t until_s = 0) {

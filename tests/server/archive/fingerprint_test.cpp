@@ -17,7 +17,7 @@ using namespace aeolis::archive;
 namespace {
 
 archive::NoteRecord note(std::string text) {
-    return {{0, Ert{7}}, std::move(text), "Ada", "2026-11-22T12:00:00Z", {}};
+    return {{0, Ert{7}}, std::move(text), "Ada", "2026-11-22T12:00:00Z", {}, {}, {}, 0};
 }
 
 /// A run with a row in each table, over, and one that was cut off; with the head of the audit as it was then.
