@@ -8,8 +8,8 @@ import { aStep, aWatchdog, anExecution, us } from '../testing/procedures';
 import { earthWords, endOf, knownWhen, missedOf, signWords, timelineOf, timesOf } from './model';
 
 const aClock = create(ClockReplySchema, { sclk: ENTRY_SCLK, scetUs: ertUs('2012-219T05:00:00.0'), rate: 1 });
-const far = timesOf(aStore([], aRun({ clock: aClock, lightTimeS: 100 })));
-const near = timesOf(aStore([], aRun({ clock: aClock, lightTimeS: 0 })));
+const far = timesOf(aStore([], aRun({ clock: aClock, lightTimeS: 100, clocks: undefined })));
+const near = timesOf(aStore([], aRun({ clock: aClock, lightTimeS: 0, clocks: undefined })));
 
 const FAULT: ScoreFault = {
   text: 'radar A silent',
@@ -28,7 +28,7 @@ const FAULT: ScoreFault = {
 it('an instant has its time on Earth by clock correlation and light time, and none without a clock', () => {
   expect(earthWords(far, 0)).toBe('219T05:01:40.0');
   expect(far.ofErt(us('2012-219T05:01:50.0'))).toBeCloseTo(10);
-  expect(earthWords(timesOf(aStore([], aRun())), 0)).toBe('—');
+  expect(earthWords(timesOf(aStore([], aRun({ clocks: undefined }))), 0)).toBe('—');
 });
 
 it('a fault was done a light time before anybody could know of it, was seen by a sign, and then answered', () => {

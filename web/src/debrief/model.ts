@@ -71,17 +71,12 @@ export interface Times {
   ofErt(us: string | bigint): number;
   ofSeconds(ert_s: number): number;
 }
-export function timesOf({ run, entrySclk }: Pick<RunStore, 'run' | 'entrySclk'>): Times {
-  const { clock, lightTimeS } = run;
-  const rate = clock?.rate || 1;
-  const entry_s = clock ? secondsOfErt(clock.scetUs) + (entrySclk - clock.sclk) * rate + lightTimeS : NaN;
-  return {
-    lightTime_s: lightTimeS,
-    earth: (e_s) => entry_s + e_s * rate,
-    ofErt: (us) => (secondsOfErt(us) - entry_s) / rate,
-    ofSeconds: (ert_s) => (ert_s - entry_s) / rate,
-  };
-}
+export const timesOf = (run: RunStore): Times => ({
+  lightTime_s: run.run.lightTimeS,
+  earth: (e_s) => run.ertOf(run.entrySclk + e_s),
+  ofErt: (us) => run.sclkSeenAt(secondsOfErt(us)) - run.entrySclk,
+  ofSeconds: (ert_s) => run.sclkSeenAt(ert_s) - run.entrySclk,
+});
 
 /** "219T05:10:47.4", UTC on Earth. */
 export const earthWords = (times: Times, e_s: number): string => dayOfYear(times.earth(e_s)).replace(/^\d{4}-/, '');

@@ -221,12 +221,15 @@ export class RunStore {
     return at.ert_s + (sclk - at.sclk) * (this.run.clock?.rate || 1);
   }
   /**
-   * One instant on both clocks. An old run has no clocks any more. Then the first tone gives it, whose SCLK is that of
-   * its beginning by light time, or else the first live event, which was under way slightly longer.
+   * One instant on both clocks. A run that is over has no clocks any more. Then its clock correlation and light time
+   * give it; without these the first tone, whose SCLK is that of its beginning by light time, or the first live event,
+   * which was under way slightly longer.
    */
   private get instant(): { sclk: number; ert_s: number } {
     const { ertUs } = this.clocks ?? {};
     if (ertUs !== undefined) return { sclk: this.seenSclk, ert_s: secondsOfErt(ertUs) };
+    const { clock, lightTimeS } = this.run;
+    if (clock) return { sclk: clock.sclk, ert_s: secondsOfErt(clock.scetUs) + lightTimeS };
     const tone = this.tones[0]?.fact;
     if (tone) return { sclk: tone.sclk, ert_s: secondsOfErt(tone.ertStartUs) };
     const event = this.events.find((row) => row.live);
