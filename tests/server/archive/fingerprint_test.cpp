@@ -131,9 +131,8 @@ TEST_CASE("whatever of a run is edited, taken out or added by hand, verify names
          {"UPDATE runs SET started = '2026' WHERE run = 1", "run 1: runs: not what"},
          {"UPDATE packets SET ert_us = ert_us + 1 WHERE run = 1 AND sclk = 1003", "run 1: packets: not what"},
          {"UPDATE words SET word = 'x_band' WHERE kind = 'link' AND word = 'uhf_live'", "run 1: packets: not what"},
-         {"INSERT INTO notes SELECT (SELECT max(key) FROM notes) + 1, ert_us, author, 'put in', written, sclk FROM "
-          "notes "
-          "LIMIT 1",
+         {"INSERT INTO notes SELECT (SELECT max(key) FROM notes) + 1, ert_us, author, 'put in', written, sclk, call, "
+          "position, reads_back FROM notes LIMIT 1",
           "run 1: items after "},
          {"DELETE FROM runs WHERE run = 1", "run 1: the audit has its fingerprint, and it is gone without a prune"},
          {"INSERT INTO pruned_runs SELECT run, scenario, seed, case_number, outcome, started, '' FROM runs WHERE run = "
