@@ -4,8 +4,8 @@
 import assert from 'node:assert/strict';
 import path from 'node:path';
 import { test } from 'node:test';
-import { comesToRest, findings, temporaryFolder, waitFor, workplace } from './support.mjs';
-import { notWhole } from './texts.mjs';
+import { comesToRest, findings, temporaryFolder, waitFor, workplace } from '../support.mjs';
+import { notWhole } from '../texts.mjs';
 
 const { open, serve } = workplace();
 

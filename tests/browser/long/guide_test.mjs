@@ -2,7 +2,7 @@
 // A newcomer lands a spacecraft by the guide alone.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { setPace as pace, waitFor, workplace } from './support.mjs';
+import { setPace as pace, waitFor, workplace } from '../support.mjs';
 
 const { open, serve } = workplace();
 

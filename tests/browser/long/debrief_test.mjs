@@ -3,8 +3,8 @@
 // on each window and on paper, in both themes.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { comesToRest, control, findings, flyTo, untilRun, waitFor, workplace } from './support.mjs';
-import { notWhole } from './texts.mjs';
+import { comesToRest, control, findings, flyTo, untilRun, waitFor, workplace } from '../support.mjs';
+import { notWhole } from '../texts.mjs';
 
 const { open, serve } = workplace();
 

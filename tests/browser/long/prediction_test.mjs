@@ -2,8 +2,8 @@
 // What is predicted, beside a run that is live, one that is over, and a past of it.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { comesToRest, findings, flyTo, waitFor, workplace } from './support.mjs';
-import { keepWhatIsWritten } from './texts.mjs';
+import { comesToRest, findings, flyTo, waitFor, workplace } from '../support.mjs';
+import { keepWhatIsWritten } from '../texts.mjs';
 
 const { open, serve } = workplace();
 

@@ -3,7 +3,7 @@
 // browser, and a layout kept by the server; on a landing that was flown.
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
-import { findings, landed, waitFor, workplace } from './support.mjs';
+import { findings, landed, waitFor, workplace } from '../support.mjs';
 
 const { open, serve } = workplace();
 let server;
