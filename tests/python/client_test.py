@@ -137,7 +137,12 @@ class Landed(unittest.TestCase):
     def test_pages_come_to_all_events(self) -> None:
         with Client(self.server.address) as aeolis:
             by_tens = [item.seq for item in aeolis.events(run=self.landed, limit=10)]
-            self.assertEqual(by_tens, [item.seq for item in aeolis.events(run=self.landed)])
+            every = list(aeolis.events(run=self.landed))
+            self.assertEqual(by_tens, [item.seq for item in every])
+            entry = aeolis.run(self.landed).entry_sclk
+            late = [item.seq for item in every if entry + 60 <= item.event.sclk <= entry + 240]
+            self.assertEqual([item.seq for item in aeolis.events(run=self.landed, start="E+1:00", end="E+4:00")], late)
+            self.assertGreater(len(late), 0)
 
     def test_times_of_python_are_instants_whatever_their_zone(self) -> None:
         with Client(self.server.address) as aeolis:
@@ -170,6 +175,9 @@ class Landed(unittest.TestCase):
                 aeolis.command("NO_OP", release_at=float("nan"))
             with self.assertRaisesRegex(CommandRefused, "409: no run goes on"):
                 aeolis.command("NO_OP")
+            aeolis._client._http.base_url = "http://127.0.0.1:1"
+            with self.assertRaisesRegex(AeolisError, self.server.address), tempfile.TemporaryDirectory() as folder:
+                aeolis.export(Path(folder) / "a.csv", ["altitude_m"], run=self.landed)
         threads = threading.active_count()
         with self.assertRaisesRegex(AeolisError, "http://127.0.0.1:1"):
             Client("http://127.0.0.1:1")
@@ -267,6 +275,46 @@ class InProgress(unittest.TestCase):
                 return seen
 
         self.assertEqual(len(asyncio.run(follow())), 60)
+
+    def test_a_stream_that_is_refused_for_now_is_opened_again_and_one_refused_for_good_says_its_status(self) -> None:
+        server = Server()
+        self.addCleanup(server.end)
+        refusals = ["503 Service Unavailable", "502 Bad Gateway", ""]  # empty: closed without an answer
+
+        async def pass_on(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+            head = await reader.readuntil(b"\r\n\r\n")
+            if b"/api/v1/stream" in head and refusals:
+                if status := refusals.pop(0):
+                    writer.write(f"HTTP/1.1 {status}\r\nContent-Length: 0\r\n\r\n".encode())
+                writer.close()
+                return
+            there, back = await asyncio.open_connection("127.0.0.1", int(server.address.rsplit(":", 1)[1]))
+            back.write(head)
+
+            async def copy(source: asyncio.StreamReader, sink: asyncio.StreamWriter) -> None:
+                while octets := await source.read(65536):
+                    sink.write(octets)
+                sink.close()
+
+            await asyncio.gather(copy(reader, back), copy(there, writer), return_exceptions=True)
+
+        async def follow() -> None:
+            between = await asyncio.start_server(pass_on, "127.0.0.1", 0)
+            port = between.sockets[0].getsockname()[1]
+            async with AsyncClient(f"http://127.0.0.1:{port}") as aeolis:
+                run = (await aeolis.start("nominal", pace=1)).run
+                await aeolis.control(stop=True)
+                await aeolis.wait_for_end(run, timeout_s=60)
+                seen = [item.seq async for item in aeolis.subscribe(run=run)]
+                self.assertEqual(seen, [item.seq async for item in aeolis.items(run=run)])
+                self.assertEqual(refusals, [])
+                refusals.append("401 Unauthorized")
+                with self.assertRaises(AeolisError) as refused:
+                    await aeolis.subscribe(run=run).__anext__()
+                self.assertEqual(refused.exception.status, 401)
+            between.close()
+
+        asyncio.run(follow())
 
     def test_a_full_stream_that_is_cut_off_at_any_place_has_every_value_that_the_run_has(self) -> None:
         server = Server()

@@ -29,6 +29,7 @@ Run = Union[int, str]
 STAGES = ("queued", "authorised", "released", "radiated", "received", "accepted", "executed", "verified")
 _ASK_AGAIN_S = 0.25
 _WAITS_S = (0.2, 0.5, 1.0, 2.0, 5.0)  # before a lost stream is opened again, or a command is sent again
+_PASSING = (0, 429, 502, 503, 504)  # statuses of a server that is away or busy, or of the proxy before it
 
 
 class AsyncClient:
@@ -115,7 +116,7 @@ class AsyncClient:
         source: str = "",
     ) -> list[Any]:
         """Samples of channels, as ChannelSeries: all, or thinned to about `points`. @param source realtime, recorded"""
-        query = {"names": ",".join(channels), "from": start, "to": end, "points": points, "source": source or None}
+        query = {"names": ",".join(channels), "start": start, "end": end, "points": points, "source": source or None}
         answer = await self._answer("GET", f"/api/v1/runs/{run}/channels", query={**query, "format": "protobuf"})
         return list(self.schema.ChannelSeriesList.FromString(answer.content).channels)
 
@@ -146,11 +147,11 @@ class AsyncClient:
         return frame_of(await self.history(channels, run=state.run, **limits), state.entry_sclk)
 
     def events(self, *, run: Run = "latest", **query: Any) -> AsyncIterator[Any]:
-        """Event items, page by page. @param query level, text, from, to, order: oldest or newest first"""
+        """Event items, page by page. @param query level, text, start, end, order: oldest or newest"""
         return self._pages("EventList", f"/runs/{run}/events", query)
 
     def tones(self, *, run: Run = "latest", **query: Any) -> AsyncIterator[Any]:
-        """Tone items, page by page. @param query text, from, to, order"""
+        """Tone items, page by page. @param query text, start, end, order"""
         return self._pages("ToneList", f"/runs/{run}/tones", query)
 
     def notes(self, *, run: Run = "latest", **query: Any) -> AsyncIterator[Any]:
@@ -220,16 +221,23 @@ class AsyncClient:
     async def export(
         self, path: Union[str, Path], channels: Sequence[str], *, run: Run = "latest", **query: Any
     ) -> int:
-        """Writes samples to a CSV file as they come, whatever their number. Returns the octets written."""
+        """Writes samples to a CSV file as they come, whatever their number. Returns the octets written.
+
+        @param query start, end, source
+        Errors: AeolisError; when the connection breaks off, the file is incomplete
+        """
         asked = {"names": ",".join(channels), **query}
         written = 0
-        async with self._http.stream("GET", f"/api/v1/runs/{run}/samples", params=_given(asked)) as answer:
-            if answer.status_code >= 400:
-                await answer.aread()
-                raise _problem(answer)
-            with open(path, "wb") as file:
-                async for part in answer.aiter_bytes():
-                    written += file.write(part)
+        try:
+            async with self._http.stream("GET", f"/api/v1/runs/{run}/samples", params=_given(asked)) as answer:
+                if answer.status_code >= 400:
+                    await answer.aread()
+                    raise _problem(answer)
+                with open(path, "wb") as file:
+                    async for part in answer.aiter_bytes():
+                        written += file.write(part)
+        except httpx.HTTPError as error:
+            raise self._no_answer(error) from error
         return written
 
     # Rehearsals and commands.
@@ -301,13 +309,13 @@ class AsyncClient:
             try:
                 return await self._answer("POST", path, body=body, accept=(202, 409, 422))
             except AeolisError as error:
-                if wait_s is None or error.status not in (0, 429, 503):
+                if wait_s is None or error.status not in _PASSING:
                     raise
             await asyncio.sleep(wait_s)
         raise AssertionError
 
     async def commands(self, *, run: Run = "latest", **query: Any) -> list[Any]:
-        """The CommandHistory of each command of a run. @param query text, from, to, order"""
+        """The CommandHistory of each command of a run. @param query text, start, end, order"""
         return [history async for history in self._pages("CommandList", f"/runs/{run}/commands", query)]
 
     async def wait_for_stage(self, number: int, stage: str, *, run: Run = "latest", timeout_s: float = 60.0) -> Any:
@@ -365,9 +373,10 @@ class AsyncClient:
                     wanted["run"] = wanted["run"] or message.run
                     if state.run == wanted["run"] and _is_over(state) and wanted["after_seq"] >= state.last_seq:
                         return
-            except (OSError, websockets.exceptions.ConnectionClosed, asyncio.TimeoutError) as error:
-                if lost == len(_WAITS_S):
-                    raise AeolisError(0, f"{self._server}: the stream is lost: {error}") from error
+            except (OSError, asyncio.TimeoutError, websockets.exceptions.WebSocketException) as error:
+                status = _status_of(error)
+                if lost == len(_WAITS_S) or status not in _PASSING:
+                    raise AeolisError(status, f"{self._server}: the stream is lost: {error}") from error
                 await asyncio.sleep(_WAITS_S[lost])
                 lost += 1
 
@@ -399,6 +408,7 @@ class AsyncClient:
                     yield kind, getattr(reply, kind)
                 elif kind == "welcome" and reply.welcome.HasField("run_state"):
                     yield "run_state", reply.welcome.run_state
+            raise ConnectionError("the server has closed it")
 
     # HTTP.
 
@@ -414,10 +424,13 @@ class AsyncClient:
         try:
             answer = await self._http.request(method, path, params=_given(query or {}), json=body)
         except httpx.HTTPError as error:
-            raise AeolisError(0, f"{self._server}: {error or type(error).__name__}") from error
+            raise self._no_answer(error) from error
         if answer.status_code >= 400 and answer.status_code not in accept:
             raise _problem(answer)
         return answer
+
+    def _no_answer(self, error: httpx.HTTPError) -> AeolisError:
+        return AeolisError(0, f"{self._server}: {str(error) or type(error).__name__}")
 
     async def _ask(self, message: str, method: str, path: str, body: Optional[dict[str, Any]] = None) -> Any:
         return self._read(message, await self._answer(method, "/api/v1" + quote(path, safe="/"), body=body))
@@ -441,8 +454,15 @@ def _is_over(state: Any) -> bool:
     return word(state, "state") in ("finished", "interrupted")
 
 
+def _status_of(error: Exception) -> int:
+    """The status by which an upgrade to a stream was refused; 0: another error."""
+    return int(getattr(getattr(error, "response", error), "status_code", 0))
+
+
 def _given(query: dict[str, Any]) -> dict[str, Any]:
-    return {name: _written(value) for name, value in query.items() if value is not None}
+    """A query as the server reads it: `from` is a keyword of Python, so the client says start and end."""
+    names = {"start": "from", "end": "to"}
+    return {names.get(name, name): _written(value) for name, value in query.items() if value is not None}
 
 
 def _written(value: Any) -> Any:
