@@ -54,7 +54,6 @@ struct Archive::State {
     Result<void> in_place();
     Result<void> put_back();
     Result<void> mark_interrupted();
-    Result<void> add_dictionary(const dictionary::Dictionary& dictionary);
     Result<RunId> add_run(const RunStart& start, const dictionary::Dictionary& dictionary);
     Result<void> end_run(RunId run, const RunEnd& end, Sequence last_seq);
     Result<void> add_fingerprint(RunId run, Sequence first, Sequence last);
@@ -179,7 +178,7 @@ Result<RunId> Archive::begin_run(const RunStart& start, const dictionary::Dictio
     if (auto done = state_->in_place(); !done) return done.error();
     auto transaction = sqlite::Transaction::begin_write(state_->database);
     if (!transaction) return transaction.error();
-    if (auto done = state_->add_dictionary(dictionary); !done) return done.error();
+    if (auto done = add_dictionary(state_->database, dictionary); !done) return done.error();
     auto run = state_->add_run(start, dictionary);
     if (!run) return run.error();
     if (auto done = transaction->commit(); !done) return done.error();
@@ -213,39 +212,6 @@ Result<void> Archive::continue_run(RunId run) {
     if (!changed) return changed.error();
     if (*changed != 1) return Error{"run " + std::to_string(run.value) + " was not cut off"};
     return transaction->commit();
-}
-
-Result<void> Archive::State::add_dictionary(const dictionary::Dictionary& dictionary) {
-    const std::int64_t id = dictionary.id;
-    auto known =
-        database.integer_of(("SELECT count(*) FROM dictionaries WHERE dictionary = " + std::to_string(id)).c_str());
-    if (!known) return known.error();
-    if (*known != 0) return {};
-    auto whole = database.prepare("INSERT INTO dictionaries VALUES (?,?,?)");
-    auto channel_row = database.prepare("INSERT INTO dictionary_channels VALUES (?,?,?,?,?,?)");
-    auto packet_row = database.prepare("INSERT INTO dictionary_packets VALUES (?,?,?,?)");
-    for (const auto* statement : {&whole, &channel_row, &packet_row})
-        if (!*statement) return statement->error();
-    whole->bind(1, id).bind(2, std::string_view(dictionary.mission)).bind(3, std::int64_t{dictionary.timeline_version});
-    if (auto done = whole->run(); !done) return done;
-    for (const auto& channel : dictionary.channels) {
-        channel_row->bind(1, id)
-            .bind(2, std::int64_t{channel.id.value})
-            .bind(3, std::string_view(channel.name))
-            .bind(4, std::string_view(channel.alias))
-            .bind(5, std::string_view(channel.type.unit))
-            .bind(6, std::string_view(channel.text));
-        if (auto done = channel_row->run(); !done) return done;
-    }
-    for (std::size_t i = 0; i < dictionary.packets.size(); ++i) {
-        const auto& packet = dictionary.packets[i];
-        packet_row->bind(1, id)
-            .bind(2, sqlite::number(i))
-            .bind(3, std::string_view(packet.name))
-            .bind(4, std::int64_t{packet.apid.value});
-        if (auto done = packet_row->run(); !done) return done;
-    }
-    return {};
 }
 
 Result<RunId> Archive::State::add_run(const RunStart& start, const dictionary::Dictionary& dictionary) {

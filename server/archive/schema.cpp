@@ -360,4 +360,37 @@ Result<void> check_for_reading(sqlite::Database& database) {
     return *empty ? not_ours(database) : Result<void>{};
 }
 
+Result<void> add_dictionary(sqlite::Database& database, const dictionary::Dictionary& dictionary) {
+    const std::int64_t id = dictionary.id;
+    auto known =
+        database.integer_of(("SELECT count(*) FROM dictionaries WHERE dictionary = " + std::to_string(id)).c_str());
+    if (!known) return known.error();
+    if (*known != 0) return {};
+    auto whole = database.prepare("INSERT INTO dictionaries VALUES (?,?,?)");
+    auto channel_row = database.prepare("INSERT INTO dictionary_channels VALUES (?,?,?,?,?,?)");
+    auto packet_row = database.prepare("INSERT INTO dictionary_packets VALUES (?,?,?,?)");
+    for (const auto* statement : {&whole, &channel_row, &packet_row})
+        if (!*statement) return statement->error();
+    whole->bind(1, id).bind(2, std::string_view(dictionary.mission)).bind(3, std::int64_t{dictionary.timeline_version});
+    if (auto done = whole->run(); !done) return done;
+    for (const auto& channel : dictionary.channels) {
+        channel_row->bind(1, id)
+            .bind(2, std::int64_t{channel.id.value})
+            .bind(3, std::string_view(channel.name))
+            .bind(4, std::string_view(channel.alias))
+            .bind(5, std::string_view(channel.type.unit))
+            .bind(6, std::string_view(channel.text));
+        if (auto done = channel_row->run(); !done) return done;
+    }
+    for (std::size_t i = 0; i < dictionary.packets.size(); ++i) {
+        const auto& packet = dictionary.packets[i];
+        packet_row->bind(1, id)
+            .bind(2, sqlite::number(i))
+            .bind(3, std::string_view(packet.name))
+            .bind(4, std::int64_t{packet.apid.value});
+        if (auto done = packet_row->run(); !done) return done;
+    }
+    return {};
+}
+
 }  // namespace aeolis::archive

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dictionaries/dictionary.hpp"
 #include "server/archive/records.hpp"
 #include "server/archive/sqlite.hpp"
 
@@ -12,6 +13,9 @@ namespace aeolis::archive {
 /// an Aeolis archive" or "FILE has archive schema N, this program has M: …".
 Result<void> prepare_for_writing(sqlite::Database& database);
 Result<void> check_for_reading(sqlite::Database& database);
+
+/// Adds the names of a dictionary, with which other programs read its runs, unless they are there.
+Result<void> add_dictionary(sqlite::Database& database, const dictionary::Dictionary& dictionary);
 
 /// Key of an item's row: run and sequence number in one integer. The rows of a run are then adjacent and in order, and
 /// every insert is an append.

@@ -45,7 +45,7 @@ class Scratch {
             if (auto done = scratch.database_.execute(sql); !done) return done.error();
         if (auto done = archive::prepare_for_writing(scratch.database_); !done) return done.error();
         if (auto done = scratch.database_.attach_read_only(archive, "archive"); !done) return done.error();
-        if (auto done = scratch.database_.execute("INSERT OR REPLACE INTO main.words SELECT * FROM archive.words");
+        if (auto done = scratch.database_.execute("INSERT OR IGNORE INTO main.words SELECT * FROM archive.words");
             !done)
             return done.error();
         return scratch;
@@ -90,6 +90,35 @@ Result<std::vector<RunToDerive>> runs_of(sqlite::Database& database, std::option
     }
     if (only && runs.empty()) return Error{"no run " + std::to_string(only->value)};
     return runs;
+}
+
+/// Compares what gives rows their meaning, above all to other programs: tables and views, the words for numbers, and the
+/// names of the dictionary where a run uses it. Tables beside ours may be there, but no trigger or view.
+Result<void> verify_meaning(sqlite::Database& database, const dictionary::Dictionary& dictionary, Verification& found) {
+    if (auto done = archive::add_dictionary(database, dictionary); !done) return done;
+    const auto id = std::to_string(dictionary.id);
+    std::string sql = "SELECT DISTINCT type || ' ' || name || ': not as this program makes it' FROM ("
+                      " SELECT type, name, sql FROM main.sqlite_schema EXCEPT"
+                      " SELECT type, name, sql FROM archive.sqlite_schema)"
+                      " UNION ALL SELECT type || ' ' || name || ': no part of an archive' FROM archive.sqlite_schema"
+                      " WHERE type IN ('trigger', 'view') AND name NOT IN (SELECT name FROM main.sqlite_schema)"
+                      " UNION ALL SELECT 'words: ' || kind || ' ' || number || ' is not \"' || word || '\"' FROM ("
+                      " SELECT kind, number, word FROM main.words EXCEPT SELECT * FROM archive.words)";
+    for (const std::string table : {"dictionaries", "dictionary_channels", "dictionary_packets"}) {
+        const auto ours = "SELECT * FROM main." + table;
+        const auto theirs = "SELECT * FROM archive." + table + " WHERE dictionary = " + id;
+        sql += " UNION ALL SELECT '" + table + ": not what dictionary " + id + " says' WHERE EXISTS" +
+               " (SELECT 1 FROM archive.runs WHERE dictionary = " + id + ") AND (EXISTS (" + ours + " EXCEPT " +
+               theirs + ") OR EXISTS (" + theirs + " EXCEPT " + ours + "))";
+    }
+    auto rows = database.prepare(sql.c_str());
+    if (!rows) return rows.error();
+    for (;;) {
+        auto another = rows->step();
+        if (!another) return another.error();
+        if (!*another) return {};
+        found.faults.emplace_back(rows->text(0));
+    }
 }
 
 std::string other_words(const RunToDerive& run, const dictionary::Dictionary& dictionary) {
@@ -319,6 +348,7 @@ Result<Verification> verify(const std::filesystem::path& file, std::optional<Run
     auto& database = scratch->database();
     auto transaction = sqlite::Transaction::begin_write(database);
     if (!transaction) return transaction.error();
+    if (auto done = verify_meaning(database, dictionary, found); !done) return done.error();
     auto runs = runs_of(database, only);
     if (!runs) return runs.error();
     for (const RunToDerive& run : *runs) {

@@ -32,8 +32,9 @@ struct Verification {
     bool stopped = false;             ///< before all was compared
 };
 
-/// Checks the file's structure, the audit, the sequence numbers, every derived row against the packets, and all other
-/// rows of a run against its fingerprint in the audit. It only reads the archive, at one instant; a writer may proceed.
+/// Checks the file's structure, the audit, the tables, views, words and names by which other programs read it, the
+/// sequence numbers, every derived row against the packets, and all other rows of a run against its fingerprint in the
+/// audit. It only reads the archive, at one instant; a writer may proceed.
 /// @param run      none: all
 /// @param scratch  a folder with room for the derived rows of one run
 /// @param other    the mission of the dictionary; null: our own

@@ -180,6 +180,27 @@ TEST_CASE("verify names what is wrong, and finds nothing in a good archive", "[a
         const auto faults = recorded.faults();
         CHECK_FALSE(faults.empty());  // its own row, and all that followed from it
     }
+    SECTION("a word, by which other programs read a number") {
+        CHECK(only("UPDATE words SET word = 'recorded' WHERE kind = 'source' AND number = 1") ==
+              "words: source 1 is not \"realtime\"");
+    }
+    SECTION("a name of the dictionary") {
+        CHECK(only("UPDATE dictionary_channels SET name = 'speed_mps' WHERE name = 'altitude_m'") ==
+              "dictionary_channels: not what dictionary 4711 says");
+    }
+    SECTION("a packet more in the dictionary") {
+        CHECK(only("INSERT INTO dictionary_packets VALUES (4711, 999, 'NoPacket', 7)") ==
+              "dictionary_packets: not what dictionary 4711 says");
+    }
+    SECTION("a view, by which other programs read events") {
+        CHECK(only("DROP VIEW event_log; CREATE VIEW event_log AS SELECT * FROM events") ==
+              "view event_log: not as this program makes it");
+    }
+    SECTION("a trigger, which would change rows to come; a table of somebody's own is none of ours") {
+        CHECK(
+            only("CREATE TABLE mine (a); CREATE TRIGGER quiet AFTER INSERT ON events BEGIN DELETE FROM alarms; END") ==
+            "trigger quiet: no part of an archive");
+    }
     SECTION("the last number") {
         CHECK(only("UPDATE runs SET last_seq = last_seq + 5 WHERE run = 1").find("run 1: its last item should be ") ==
               0);
