@@ -246,16 +246,23 @@ HttpResponse json_response(const google::protobuf::Message& message, unsigned st
 /// Makes a problem of a refused command, or command file: its reply, with the members of a problem beside its own. The
 /// reply's reason is the problem's sentence.
 template <typename Reply>
-HttpResponse refusal_response(Reply reply, unsigned status) {
-    auto response = error_response(status, reply.reason());
+Reply as_problem(Reply reply, unsigned status) {
     reply.set_type(std::string{about_blank});
     reply.set_title(reason_phrase(status));
     reply.set_status(status);
     reply.set_detail(reply.reason());
     reply.set_error(reply.reason());
-    response.body = json_response(reply).body;
+    return reply;
+}
+/// The response with that problem.
+template <typename Reply>
+HttpResponse refusal_response(Reply reply, unsigned status) {
+    auto response = error_response(status, reply.reason());
+    response.body = json_response(as_problem(std::move(reply), status)).body;
     return response;
 }
+/// The reply to a command that does not reach the run.
+v1::CommandReply unsent(const v1::CommandRequest& command, const std::string& reason);
 /// Reads a request's body. Returns the response when it cannot: 400 when it is no such message, 422 when a value in it
 /// makes no sense.
 std::optional<HttpResponse> read_body(const std::string& body, google::protobuf::Message& message);

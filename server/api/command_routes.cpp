@@ -66,15 +66,6 @@ Result<void> complete(const ApiRequest& call, v1::CommandRequest& command) {
     return {};
 }
 
-/// The reply to a command that does not reach the run.
-v1::CommandReply unsent(const v1::CommandRequest& command, const std::string& reason) {
-    v1::CommandReply reply;
-    reply.set_request(command.request());
-    reply.set_dry_run(command.dry_run());
-    reply.set_reason(reason);
-    return reply;
-}
-
 /// @param malformed  what makes no sense in the file, so that nothing was sent; empty: nothing
 HttpResponse response_to_file(std::vector<v1::CommandReply> replies, const std::string& malformed) {
     v1::SequenceReply reply;
@@ -91,6 +82,14 @@ HttpResponse response_to_file(std::vector<v1::CommandReply> replies, const std::
 }
 
 }  // namespace
+
+v1::CommandReply unsent(const v1::CommandRequest& command, const std::string& reason) {
+    v1::CommandReply reply;
+    reply.set_request(command.request());
+    reply.set_dry_run(command.dry_run());
+    reply.set_reason(reason);
+    return reply;
+}
 
 void name_asker(const Operator& who, v1::CommandRequest& request) {
     if (who.accounts) request.set_controller(person_of(who));

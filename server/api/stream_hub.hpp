@@ -124,6 +124,8 @@ class StreamHub {
             [](const std::string& name) -> Result<std::uint32_t> {
             return Error{"channel_names: there is no channel '" + name + "'"};
         };
+        /// Whether a channel has this id.
+        std::function<bool(std::uint32_t id)> has_channel = [](std::uint32_t) { return true; };
         /// The clock for replays at a pace.
         std::function<std::chrono::steady_clock::time_point()> now = std::chrono::steady_clock::now;
         RateBy rate_by = RateBy::vehicle;

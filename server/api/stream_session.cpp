@@ -24,6 +24,8 @@ Result<std::vector<std::uint32_t>> channels_of(const v1::Subscribe& subscribe, c
         return Error{fmt::format("channel_names: {} of them, at most {}; all_channels takes all",
                                  subscribe.channel_names_size(), channel_names_max)};
     std::vector<std::uint32_t> ids{subscribe.channels().begin(), subscribe.channels().end()};
+    if (const auto none = std::ranges::find_if_not(ids, services.has_channel); none != ids.end())
+        return Error{fmt::format("channels: there is no channel with the id {}", *none)};
     for (const auto& name : subscribe.channel_names()) {
         if (name.size() > channel_name_octets_max)
             return Error{fmt::format("channel_names: one of {} octets is no name of a channel", name.size())};

@@ -8,6 +8,7 @@
 #include "server/base/log_line.hpp"
 #include "server/base/wall_clock.hpp"
 #include "server/rehearsal/again_of.hpp"
+#include "server/rehearsal/command_messages.hpp"
 #include "server/shadow/shadow.hpp"
 
 #include <algorithm>
@@ -20,6 +21,12 @@ namespace aeolis::server {
 namespace {
 
 constexpr unsigned stream_check_ms = 1'000;  // chosen: longest time that a client follows after its session ended
+
+/// Why a client of the stream gets nothing done, with the status by which its route would say so.
+struct Refusal {
+    unsigned status;
+    std::string reason;
+};
 
 /// The identity of the user who started the program.
 Operator command_line_operator() {
@@ -185,44 +192,46 @@ StreamSession::Client ConsoleBackend::stream_client(const Credentials& credentia
         return may(access_->identify(credentials), Right::watch) ? "" : "the log-in has ended: log in again";
     };
     const auto full = [this] { return !pipeline_->audit_has_room(); };
-    const auto allowed = [this, full](const Operator& who, Right right) -> Result<void> {
-        if (!follows_.empty()) return Error{follows_};
-        if (!who.role) return Error{"the log-in has ended: log in again"};
+    const auto refusal_of_right = [this, full](const Operator& who, Right right) -> std::optional<Refusal> {
+        if (!follows_.empty()) return Refusal{409, follows_};
+        if (!who.role) return Refusal{401, "the log-in has ended: log in again"};
         if (!may(who, right))
-            return Error{
-                fmt::format("{} is {}: this needs the right to {}", who.user, name_of(*who.role), name_of(right))};
-        if (full()) return Error{"nothing is done that the audit cannot take: " + pipeline_->fault()};
-        return {};
+            return Refusal{
+                403, fmt::format("{} is {}: this needs the right to {}", who.user, name_of(*who.role), name_of(right))};
+        if (full()) return Refusal{503, "nothing is done that the audit cannot take: " + pipeline_->fault()};
+        return std::nullopt;
     };
-    client.command = [this, credentials, allowed, full](v1::CommandRequest request,
-                                                        const std::function<void(v1::CommandReply)>& reply) {
+    const auto refusal_of_command =
+        [this, refusal_of_right](const Operator& who, const v1::CommandRequest& request) -> std::optional<Refusal> {
+        if (auto refused = refusal_of_right(who, Right::command)) return refused;
+        if (const auto many = api_->count_commands(who, 1)) return Refusal{429, many->reason};
+        if (const auto sendable = may_send(who, dictionary_, *rehearsals_, request); !sendable)
+            return Refusal{403, sendable.error().message};
+        if (const auto formed = check_form(request, dictionary_); !formed) return Refusal{422, formed.error().message};
+        return std::nullopt;
+    };
+    client.command = [this, credentials, refusal_of_command, full](v1::CommandRequest request,
+                                                                   const std::function<void(v1::CommandReply)>& reply) {
         const auto who = access_->identify(credentials);
         if (to_origin_ && may(who, Right::command)) return command_at_origin(who, request, reply);
         name_asker(who, request);
-        auto right = allowed(who, Right::command);
-        if (right) right = may_send(who, dictionary_, *rehearsals_, request);
-        if (right)
-            if (const auto many = api_->count_commands(who, 1)) right = Error{many->reason};
         const auto noted = [this, who, detail = to_json(request), dry_run = request.dry_run(), full,
-                            reply](const v1::CommandReply& answer) {
+                            reply](const v1::CommandReply& answer, unsigned status_if_refused) {
             // A dry run is not audited: a console repeats it every second.
             if (!dry_run && !full())
                 pipeline_->audit(
                     audit_record(who, "command", detail, answer.accepted() ? "done" : "refused: " + answer.reason()));
-            reply(answer);
+            reply(answer.accepted() ? answer : as_problem(answer, status_if_refused));
         };
-        if (right)
-            return rehearsals_->command(std::move(request),
-                                        {may_still_send(*access_, credentials, dictionary_, *rehearsals_), who.browser,
-                                         may(who, Right::hazardous)},
-                                        noted);
-        v1::CommandReply refusal;
-        refusal.set_request(request.request());
-        refusal.set_reason(right.error().message);
-        noted(refusal);
+        if (const auto refused = refusal_of_command(who, request))
+            return noted(unsent(request, refused->reason), refused->status);
+        rehearsals_->command(
+            std::move(request),
+            {may_still_send(*access_, credentials, dictionary_, *rehearsals_), who.browser, may(who, Right::hazardous)},
+            [noted](const v1::CommandReply& answer) { noted(answer, 409); });
     };
-    client.control = [this, credentials, allowed](v1::RehearsalControl control,
-                                                  const std::function<void(Result<void>)>& done) {
+    client.control = [this, credentials, refusal_of_right](v1::RehearsalControl control,
+                                                           const std::function<void(Result<void>)>& done) {
         const auto who = access_->identify(credentials);
         sign(who, control);
         const auto noted = [this, who, detail = to_json(control), done](const Result<void>& result) {
@@ -230,7 +239,7 @@ StreamSession::Client ConsoleBackend::stream_client(const Credentials& credentia
                 audit_record(who, "rehearsal", detail, result ? "done" : "refused: " + result.error().message));
             done(result);
         };
-        if (const auto right = allowed(who, Right::rehearse); !right) return noted(right);
+        if (const auto refused = refusal_of_right(who, Right::rehearse)) return noted(Error{refused->reason});
         if (const auto right = may_control(who, dictionary_, control); !right) return noted(right);
         const bool starts = control.action_case() == v1::RehearsalControl::kStart;
         const auto now = rehearsals_->control(control, [noted](const Result<v1::RunState>& began) {
@@ -322,6 +331,9 @@ StreamHub::Services ConsoleBackend::stream_services() {
     services.channel_id = [this, ids = channel_ids(dictionary_)](const std::string& name) -> Result<std::uint32_t> {
         if (const auto id = ids.find(name); id != ids.end()) return id->second;
         return channel_named(dictionary_, "channel_names", name).error();
+    };
+    services.has_channel = [this](std::uint32_t id) {
+        return std::ranges::any_of(dictionary_.channels, [&](const auto& channel) { return channel.id.value == id; });
     };
     return services;
 }

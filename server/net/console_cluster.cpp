@@ -194,19 +194,12 @@ void ConsoleBackend::command_at_origin(const Operator& who, const v1::CommandReq
     to_origin_->ask(request_of(who, "POST", fmt::format("/api/v1/runs/{}/commands", run), to_json(request)),
                     [this, number = request.request(), reply](const v1::RequestAnswer& answer) {
                         v1::CommandReply told;
-                        v1::ErrorReply problem;  // that has nothing of a CommandReply
-                        if (answer.content_type().empty()) {
-                            told.set_reason(answer.body());
-                        } else if (from_json(answer.body(), problem)) {
-                            told.set_reason(problem.detail());
-                        } else if (!from_json(answer.body(), told)) {
+                        if (answer.content_type().empty() || !from_json(answer.body(), told)) {
                             told.Clear();
                             told.set_reason(answer.body());
                         }
-                        for (const auto clear : {&v1::CommandReply::clear_type, &v1::CommandReply::clear_title,
-                                                 &v1::CommandReply::clear_status, &v1::CommandReply::clear_detail,
-                                                 &v1::CommandReply::clear_error})
-                            (told.*clear)();  // of HTTP
+                        // A problem with nothing of a CommandReply:
+                        if (told.reason().empty() && told.has_detail()) told.set_reason(told.detail());
                         told.set_request(number);
                         server_->post([reply, told = std::move(told)] { reply(told); });
                     });

@@ -91,6 +91,7 @@ struct Venue {
             if (name == "speed_mps") return speed;
             return Error{"channel_names: there is no channel '" + name + "'"};
         };
+        services.has_channel = [](std::uint32_t id) { return id < 1'000; };
         return services;
     }
     static constexpr std::uint64_t flown_before = 9;
@@ -499,7 +500,7 @@ TEST_CASE("a subscription names channels by name or alias, by id, or both, and t
         }
 }
 
-TEST_CASE("a subscription with a name that is no channel is refused by that name, and the one before stands",
+TEST_CASE("a subscription with a name or an id that is no channel is refused by it, and the one before stands",
           "[stream][bounds][R62]") {
     Venue venue;
     Client client{venue.hub};
@@ -514,9 +515,14 @@ TEST_CASE("a subscription with a name that is no channel is refused by that name
     message.mutable_subscribe()->clear_channel_names();
     message.mutable_subscribe()->add_channel_names(std::string(60'000, 'x'));
     client.send(message);
+    message.mutable_subscribe()->clear_channel_names();
+    message.mutable_subscribe()->add_channels(1);
+    message.mutable_subscribe()->add_channels(9'999);
+    client.send(message);
     venue.publish({samples_item(1, 5.0)});
     client.read_all();
-    REQUIRE(client.refusals.size() == 3);
+    REQUIRE(client.refusals.size() == 4);
+    CHECK(client.refusals[3] == "channels: there is no channel with the id 9999");
     CHECK(client.refusals[2] == "channel_names: one of 60000 octets is no name of a channel");
     CHECK(client.refusals[0] == "channel_names: there is no channel 'moon_phase'");
     CHECK_THAT(client.refusals[1], Catch::Contains("channel_names: 4097 of them, at most 4096"));

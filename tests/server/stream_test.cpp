@@ -222,6 +222,37 @@ TEST_CASE("a message that does not parse is refused and the stream goes on", "[s
     }
 }
 
+TEST_CASE("a command over the stream is refused as over HTTP: by the same words and the same status", "[stream][R62]") {
+    RunningServer server{shipped_scenario("nominal"), 1.0};
+    Follower client{server.port(), true};
+    for (int i = 0; i < 3000 && web_request(server.port(), "GET", "/api/v1/runs/1").status != 200; ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds{20});
+    for (const char* body :
+         {R"({"command":"NOPE","request":"7"})", R"({"command":"NO_OP","service":"XX","dry_run":true})",
+          R"({"command":"NO_OP","release_at":"tomorrow"})", R"({"command":"NO_OP","client_id":"a b"})",
+          R"({"command":"NO_OP","arguments":[{"name":"much","value":1}]})", R"({"action":"launch","number":"1"})",
+          R"({"action":"cancel","number":"1","dry_run":true})", R"({"action":"cancel","number":"99"})",
+          R"({"command":"EDL_DO_EDL"})"}) {
+        INFO(body);
+        const auto answer = web_request(server.port(), "POST", "/api/v1/runs/1/commands", body);
+        v1::CommandReply by_http;
+        REQUIRE(server::from_json(answer.body, by_http));
+        v1::ClientMessage message;
+        REQUIRE(server::from_json(body, *message.mutable_command()));
+        client.send(message);
+        do REQUIRE(client.read());
+        while (!client.last.has_command_reply());
+        const auto& by_stream = client.last.command_reply();
+        CHECK_FALSE(by_stream.accepted());
+        CHECK(by_stream.request() == by_http.request());
+        CHECK(by_stream.dry_run() == by_http.dry_run());
+        CHECK(by_stream.reason() == by_http.reason());
+        CHECK(by_stream.status() == answer.status);
+        CHECK(by_stream.title() == by_http.title());
+        CHECK(by_stream.detail() == by_http.detail());
+    }
+}
+
 TEST_CASE("an over-long message closes its own connection with 'too big'", "[stream]") {
     RunningServer server;
     StreamClient client{server.port(), "aeolis.v1.json"};
