@@ -143,9 +143,24 @@ Operator Access::operator_of(const v1::Account& account, const std::string& sess
     who.commands.assign(account.commands().begin(), account.commands().end());
     who.choose_password = account.choose_password();
     who.session = session;
-    who.expires = iso_text(live.expires);
+    who.expires =
+        iso_text(settings_.now() + std::chrono::duration_cast<Clock::duration>(live.ends - settings_.uptime()));
     return who;
 }
+
+namespace {
+
+/// Binds `who` to the commands of an account as well. With none left it may only watch: an empty list would allow all.
+void bind_to_commands(Operator& who, const v1::Account& account) {
+    const auto& allowed = account.commands();
+    if (allowed.empty()) return;
+    if (who.commands.empty()) return who.commands.assign(allowed.begin(), allowed.end());
+    std::erase_if(who.commands,
+                  [&](const std::string& command) { return std::ranges::find(allowed, command) == allowed.end(); });
+    if (who.commands.empty()) who.role = std::min(who.role, std::optional{Role::observer});
+}
+
+}  // namespace
 
 Operator Access::identify(const Credentials& credentials) {
     Operator nobody;
@@ -157,7 +172,6 @@ Operator Access::identify(const Credentials& credentials) {
         nobody.browser = browser.empty() ? std::string{no_browser} : secret_hash(browser);
         return nobody;
     }
-    const auto now = settings_.now();
     constexpr std::string_view bearer = "Bearer ";
     const std::scoped_lock lock{mutex_};
     refresh();
@@ -165,7 +179,8 @@ Operator Access::identify(const Credentials& credentials) {
     if (credentials.authorization.starts_with(bearer)) {
         const auto hash = secret_hash(credentials.authorization.substr(bearer.size()));
         const auto token = std::ranges::find(file_.tokens(), hash, &v1::AccessToken::secret_hash);
-        if (token == file_.tokens().end() || (!token->expires().empty() && token->expires() < iso_text(now)))
+        if (token == file_.tokens().end() ||
+            (!token->expires().empty() && token->expires() < iso_text(settings_.now())))
             return nobody;
         const auto* owner = find_account(file_, token->owner());
         if (!token->owner().empty() && owner == nullptr) return nobody;
@@ -175,6 +190,7 @@ Operator Access::identify(const Credentials& credentials) {
         if (owner != nullptr) nobody.role = std::min(nobody.role, role_of(owner->role()));
         nobody.expires = token->expires();
         nobody.commands.assign(token->commands().begin(), token->commands().end());
+        if (owner != nullptr) bind_to_commands(nobody, *owner);
         return nobody;
     }
     const auto secret = cookie_value(credentials.cookie, session_cookie());
@@ -182,7 +198,7 @@ Operator Access::identify(const Credentials& credentials) {
     const auto session = sessions_.find(secret_hash(secret));
     if (session == sessions_.end()) return nobody;
     const auto* account = find_account(file_, session->second.user);
-    if (account == nullptr || session->second.expires < now) {
+    if (account == nullptr || session->second.ends < settings_.uptime()) {
         sessions_.erase(session);
         return nobody;
     }
@@ -207,15 +223,8 @@ Operator Access::vouched_for(const Vouched& person, const std::string& from) {
     who.choose_password = account->choose_password();
     if (!person.session.empty()) who.session = follower->name() + ' ' + person.session;
     who.commands = person.commands;
-    if (account->commands().empty()) return who;
-    const auto not_here = [&](const std::string& command) {
-        return std::ranges::find(account->commands(), command) == account->commands().end();
-    };
-    if (who.commands.empty())
-        who.commands.assign(account->commands().begin(), account->commands().end());
-    else
-        std::erase_if(who.commands, not_here);
-    return who.commands.empty() ? nobody : who;  // an empty list would allow all
+    bind_to_commands(who, *account);
+    return who;
 }
 
 std::optional<std::string> Access::follower(const std::string& key) {
@@ -227,7 +236,7 @@ std::optional<std::string> Access::follower(const std::string& key) {
 }
 
 std::chrono::seconds Access::lock_out_of(const std::string& user, const std::string& network) const {
-    const auto now = settings_.now();
+    const auto now = settings_.uptime();
     std::chrono::seconds wait{0};
     for (const auto& key : {network, network + ' ' + user})
         if (const auto found = failures_.find(key); found != failures_.end() && found->second.locked_until > now)
@@ -241,7 +250,7 @@ std::chrono::seconds Access::locked_out(const std::string& user, const std::stri
 }
 
 void Access::count_failure(const std::string& key, unsigned allowed) {
-    const auto now = settings_.now();
+    const auto now = settings_.uptime();
     if (failures_.size() >= failures_max && !failures_.contains(key))
         failures_.erase(std::ranges::min_element(failures_, {}, [](const auto& each) { return each.second.last; }));
     auto& failures = failures_[key];
@@ -279,14 +288,14 @@ Result<Access::LoggedIn> Access::log_in(const v1::LogIn& asked, const std::strin
     if (!check_name(asked.user())) return Error{wrong_log_in};
     const auto matched = check_log_in(asked.user(), asked.password(), from);
     if (!matched) return matched.error();
-    const auto now = settings_.now();
+    const auto now = settings_.uptime();
     const std::scoped_lock lock{mutex_};
     const auto* account = find_account(file_, asked.user());
     // The account may have changed during the check.
     if (account == nullptr || account->password_hash() != *matched) return Error{wrong_log_in};
-    std::erase_if(sessions_, [&](const auto& each) { return each.second.expires < now; });
+    std::erase_if(sessions_, [&](const auto& each) { return each.second.ends < now; });
     const auto own = [&](const auto& each) { return each.second.user == asked.user(); };
-    const auto older = [](const auto& one, const auto& other) { return one.second.expires < other.second.expires; };
+    const auto older = [](const auto& one, const auto& other) { return one.second.ends < other.second.ends; };
     if (static_cast<std::size_t>(std::ranges::count_if(sessions_, own)) >= sessions_of_user_max)
         sessions_.erase(std::ranges::min_element(sessions_, [&](const auto& one, const auto& other) {
             return own(one) != own(other) ? own(one) : older(one, other);

@@ -40,7 +40,8 @@ struct Credentials {
 /// Memory   sessions_max sessions; failed log-ins of failures_max keys. Sessions end with the process
 class Access {
   public:
-    using Clock = std::chrono::system_clock;
+    using Clock = std::chrono::system_clock;   ///< of dates: when a token ends
+    using Uptime = std::chrono::steady_clock;  ///< of waits: no step of the system's clock ends or prolongs one
     static constexpr std::chrono::hours session_length{12};  ///< chosen: a shift with its hand-overs
     static constexpr std::size_t sessions_max = 1'000;       ///< chosen; the oldest session ends
     static constexpr std::size_t sessions_of_user_max = 16;  ///< chosen; the user's oldest session ends
@@ -55,6 +56,7 @@ class Access {
         std::filesystem::path file;  ///< empty: no accounts; everybody may do everything except administer
         bool secure = false;         ///< over TLS: cookies have names that only this host can set
         std::function<Clock::time_point()> now = Clock::now;
+        std::function<Uptime::time_point()> uptime = Uptime::now;
     };
     /// Reads the accounts file. A missing file is created with one administrator, whose password is first_password().
     /// The Error names the file.
@@ -106,11 +108,11 @@ class Access {
     explicit Access(Settings settings) : settings_(std::move(settings)) {}
     struct LiveSession {
         std::string user;
-        Clock::time_point expires;
+        Uptime::time_point ends;
     };
     struct Failures {
         unsigned count = 0;
-        Clock::time_point last, locked_until;
+        Uptime::time_point last, locked_until;
     };
     /// Applies the change and writes the file; the change counts from then on. Identification does not wait for the
     /// disk. Call without mutex_.

@@ -266,11 +266,11 @@ v1::CommandReply unsent(const v1::CommandRequest& command, const std::string& re
 /// Reads a request's body. Returns the response when it cannot: 400 when it is no such message, 422 when a value in it
 /// makes no sense.
 std::optional<HttpResponse> read_body(const std::string& body, google::protobuf::Message& message);
-/// The same, signed: with accounts, nobody can write in another's name.
+/// The same, signed: with accounts, nobody can write in another's name, and a token writes in its owner's.
 template <typename Request>
 std::optional<HttpResponse> read_signed(const ApiRequest& call, Request& wanted) {
     auto unreadable = read_body(call.request.body, wanted);
-    if (!unreadable && call.who.accounts) wanted.set_by(call.who.user);
+    if (!unreadable && call.who.accounts) wanted.set_by(person_of(call.who));
     return unreadable;
 }
 

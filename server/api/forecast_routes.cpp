@@ -45,7 +45,7 @@ void Api::post_forecast(const ApiRequest& call) {
     asked.respond = give_back(call.respond);  // whatever is answered but by `kept`, the place is free again
     ask(
         asked, {},
-        [this, wanted, service, truth, by = call.who.user, respond = call.respond, current = current_run()](
+        [this, wanted, service, truth, by = person_of(call.who), respond = call.respond, current = current_run()](
             archive::Reader& reader, archive::RunId id, const QueryText&) -> std::optional<HttpResponse> {
             auto state = reader.run(id);
             if (!state) return error_response(404, state.error());

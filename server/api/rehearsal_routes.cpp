@@ -16,7 +16,7 @@ RehearsalManager::Began tell_begun(const Respond& respond, bool going_on) {
 }  // namespace
 
 void sign(const Operator& who, v1::RehearsalControl& control) {
-    if (who.accounts && control.has_note()) control.mutable_note()->set_by(who.user);
+    if (who.accounts && control.has_note()) control.mutable_note()->set_by(person_of(who));
 }
 
 void Api::list_rehearsals(const ApiRequest& call) {

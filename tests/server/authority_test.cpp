@@ -674,6 +674,13 @@ TEST_CASE("a standard call is made from a position that is nobody else's, and an
     const auto own = read_back("controller", seq_of(made));
     CHECK(own.status == 409);
     CHECK_THAT(own.body, Catch::Contains("another person reads it back"));
+    const auto token = guarded
+                           .ask("administrator", "POST", "/api/v1/tokens",
+                                R"({"name":"echo","role":"controller","owner":"controller"})")
+                           .body;
+    guarded.as["echo"] = {{"Authorization", "Bearer " + token.substr(token.find(R"("token":")") + 9, 43)}};
+    CHECK(read_back("echo", seq_of(made)).status == 409);  // a person's program is no second person
+    CHECK_THAT(say("echo", R"({"text":"heard"})").body, Catch::Contains(R"("by":"controller")"));
     const auto heard = read_back("director", seq_of(made));
     REQUIRE(heard.status == 201);
     CHECK_THAT(heard.body, Catch::Contains("Relay and station: reads back “EDL communications: Parachute seen”") &&

@@ -25,6 +25,7 @@ struct Accounts {
     test::TemporaryFolder folder;
     std::filesystem::path file = folder / "accounts.json";
     Access::Clock::time_point now = Access::Clock::now();
+    std::chrono::hours clock_is_ahead{0};  ///< of the system, which somebody sets
     std::unique_ptr<Access> access;
 
     Accounts() {
@@ -37,7 +38,9 @@ struct Accounts {
         REQUIRE(access->change_user(first->who, "administrator", change));
     }
     void open() {
-        auto opened = Access::open({.file = file, .now = [this] { return now; }});
+        auto opened = Access::open({.file = file,
+                                    .now = [this] { return now + clock_is_ahead; },
+                                    .uptime = [this] { return Access::Uptime::time_point{now.time_since_epoch()}; }});
         REQUIRE(opened);
         access = std::move(*opened);
     }
@@ -154,6 +157,24 @@ TEST_CASE("who guesses waits, longer each time, and the right password does not 
     CHECK_THAT(accounts.log_in("administrator", Accounts::password).error().message, Catch::Contains("wait 60 s"));
     accounts.now += std::chrono::seconds{61};
     CHECK(accounts.log_in("administrator", Accounts::password));
+}
+
+TEST_CASE("a system clock that is set ends no log-in and no lock-out, and prolongs none", "[access][R62]") {
+    Accounts accounts;
+    const auto shift = accounts.log_in("administrator", Accounts::password);
+    REQUIRE(shift);
+    for (unsigned i = 0; i < Access::tries_of_user; ++i)
+        CHECK_FALSE(accounts.log_in("administrator", "a wrong password", "192.0.2.7"));
+    for (const int ahead_h : {48, -48, 1, 0}) {
+        accounts.clock_is_ahead = std::chrono::hours{ahead_h};
+        CHECK(accounts.who(shift->secret).role);
+        CHECK(accounts.access->locked_out("administrator", "192.0.2.7") == Access::first_lock_out);
+    }
+    accounts.clock_is_ahead = std::chrono::hours{-48};
+    accounts.now += Access::first_lock_out;
+    CHECK(accounts.access->locked_out("administrator", "192.0.2.7").count() == 0);
+    accounts.now += Access::session_length;
+    CHECK_FALSE(accounts.who(shift->secret).role);
 }
 
 TEST_CASE("who guesses from another address of the same /64 waits as well", "[access]") {
@@ -340,6 +361,24 @@ TEST_CASE("a token counts as its owner: never more than the owner may, and gone 
     REQUIRE(accounts.access->change_user(administrator->who, "ada", change));
     CHECK_FALSE(may(who(), Right::command));
     CHECK(may(who(), Right::watch));
+
+    v1::UserChange limited;
+    limited.set_role("director");
+    limited.add_commands("NO_OP");
+    limited.add_commands("EDL_DUMP_PARAMETERS");
+    REQUIRE(accounts.access->change_user(administrator->who, "ada", limited));
+    CHECK(who().commands == std::vector<std::string>{"NO_OP", "EDL_DUMP_PARAMETERS"});  // as ada herself
+    for (const char* const command : {"NO_OP", "EDL_DO_EDL"}) {
+        wanted.set_name(command[0] == 'N' ? "ping" : "lander");
+        wanted.clear_commands();
+        wanted.add_commands(command);
+        const auto other = accounts.access->add_token(wanted);
+        REQUIRE(other);
+        const auto program = accounts.access->identify({"", "Bearer " + other->token(), "127.0.0.1"});
+        CHECK(may(program, Right::watch));
+        CHECK(may(program, Right::command) == (wanted.name() == "ping"));  // nothing is left for the lander to send
+        CHECK(program.commands.size() == (wanted.name() == "ping" ? 1U : 0U));
+    }
     REQUIRE(accounts.access->remove_user("ada"));
     CHECK_FALSE(who().role);
     CHECK(accounts.access->tokens().tokens().empty());
