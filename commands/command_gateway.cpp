@@ -333,8 +333,9 @@ std::string CommandGateway::perform(const Request& asked, const Underway* comman
     if (action == "release") return waits(queue_.release(number));
     if (action == "cancel") return waits(queue_.cancel(number));
     if (command == nullptr || (entry == nullptr && stations_.over(now))) return waits(false);
+    if (entry == nullptr || !entry->needs_approval) return fmt::format("command {} waits for no approval", number);
     if (const auto refusal = not_another_person(asked, *command); !refusal.empty()) return refusal;
-    return queue_.approve(number) ? std::string{} : fmt::format("command {} waits for no approval", number);
+    return waits(queue_.approve(number));
 }
 
 std::string CommandGateway::not_another_person(const Request& asked, const Underway& command) {

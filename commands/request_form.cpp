@@ -25,8 +25,10 @@ Result<std::optional<Fop::Service>> service_named(const std::string& name) {
 }
 
 Result<void> check_controller(const std::string& name) {
-    if (name.size() <= controller_name_max) return {};
-    return Error{fmt::format("controller: a name of at most {} octets is wanted", controller_name_max)};
+    if (name.size() > controller_name_max)
+        return Error{fmt::format("controller: a name of at most {} octets is wanted", controller_name_max)};
+    if (name.find('\0') != std::string::npos) return Error{"controller: a NUL character is no text"};
+    return {};
 }
 
 Result<void> check_form(const Request& request, const dictionary::Dictionary& dictionary) {

@@ -326,7 +326,8 @@ bool Api::is_for_origin(std::string_view method, std::string_view path) {
 }
 
 void Api::name_latest(ApiRequest& call) const {
-    const auto run = parts_.follows.empty() ? parts_.rehearsals.current().run() : parts_.hub.current_run();
+    const auto since_start = parts_.follows.empty() ? parts_.rehearsals.current().run() : 0;
+    const auto run = since_start != 0 ? since_start : parts_.hub.current_run();
     if (run == 0) return;
     call.parts[0] = std::to_string(run);
     const std::string_view latest = "latest";

@@ -231,7 +231,9 @@ class Api {
     std::string dictionary_json_;
     CommandRates command_rates_;
     std::mutex counts_mutex_;
-    std::map<std::pair<std::string, unsigned>, std::uint64_t> responses_;  ///< by route and status
+    /// By route and status. Refused log-ins count from 0, or an alert's increase() would not see the first ones.
+    std::map<std::pair<std::string, unsigned>, std::uint64_t> responses_{{{"POST /api/v1/session", 401}, 0},
+                                                                         {{"POST /api/v1/session", 429}, 0}};
 };
 
 /// The response when too many jobs wait for the query threads.

@@ -13,8 +13,18 @@ using boost::beast::iequals;
 
 constexpr unsigned http_1_0 = 10;
 
-RequestTarget parts_of(const boost::urls::url_view& target, std::string host) {
-    return {std::move(host), target.path(), std::string{target.encoded_query()}};
+/// Decodes a path. An encoded slash is no separator and stays encoded [RFC 3986, 2.2].
+std::string decoded_path(const boost::urls::url_view& target) {
+    std::string path{target.encoded_path()};
+    for (auto at = path.find('%'); at != std::string::npos; at = path.find('%', at + 1))
+        if (iequals(path.substr(at, 3), "%2f")) path.insert(at + 1, "25");
+    return boost::urls::pct_string_view{path}.decode();
+}
+
+Result<RequestTarget> parts_of(const boost::urls::url_view& target, std::string host) {
+    auto path = decoded_path(target);
+    if (path.find('\0') != std::string::npos) return Error{"the request's target has a NUL character"};
+    return RequestTarget{std::move(host), std::move(path), std::string{target.encoded_query()}};
 }
 
 }  // namespace
@@ -40,7 +50,7 @@ Result<RequestTarget> target_of(const RequestHead& head) {
     if (!whole || !whole->has_authority() || (whole->scheme() != "http" && whole->scheme() != "https"))
         return Error{"the request's target is not a path"};
     auto target = parts_of(*whole, std::string{whole->encoded_host_and_port()});
-    if (target.path.empty()) target.path.push_back('/');
+    if (target && target->path.empty()) target->path.push_back('/');
     return target;
 }
 

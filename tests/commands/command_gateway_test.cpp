@@ -570,6 +570,7 @@ TEST_CASE("where two persons are wanted a command leaves when another than who a
     CHECK(station.gateway.take_uplinks().size() == 1);
     CHECK_THAT(station.latest("authorised")->evidence, Catch::Contains("approved by Ben"));
     CHECK_THAT(act("approve", "Eve"), Catch::Contains("no approval"));
+    CHECK_THAT(act("approve", "Ann"), Catch::Contains("no approval"));  // nobody else is sent for
 
     auto other = request("EDL_DO_EDL");
     other.armed = true;

@@ -46,6 +46,8 @@ TEST_CASE("a request that makes no sense is told apart by what it says alone, an
     CHECK(fault(controller) == "controller: a name of at most 64 octets is wanted");
     controller.controller.pop_back();
     CHECK(fault(controller).empty());
+    controller.controller = std::string{"Ada\0Eve", 7};  // other programs would read "Ada"
+    CHECK(fault(controller) == "controller: a NUL character is no text");
     CHECK_THAT(fault(named("DO_A_BARREL_ROLL")), Catch::StartsWith("unknown command 'DO_A_BARREL_ROLL'"));
     CHECK(fault(acting("launch", 7)) == "unknown action 'launch': release, hold, cancel or approve");
     CHECK(fault(acting("hold", 0)) == "number: that of the waiting command is wanted, from 1");

@@ -136,6 +136,24 @@ TEST_CASE("methods, paths and expectations that are none here are refused by the
     CHECK_THAT(ask("POST /api/v1/session", "Expect: tea\r\nContent-Length: 2\r\n"), Catch::StartsWith("HTTP/1.1 417 "));
 }
 
+TEST_CASE("an encoded slash separates no parts of a path, and no path has a NUL character", "[http][R63]") {
+    RunningServer server{shipped_scenario("nominal"), 1.0};
+    const auto ask = [&](const char* target) { return web_request(server.port(), "GET", target); };
+    for (int i = 0; i < 3000 && ask("/api/v1/runs/1").status != 200; ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds{20});
+    CHECK(ask("/api/v1/%72uns/%31").status == 200);
+    for (const char* target : {"/api/v1/runs%2F1", "/api/v1%2fruns/1", "/api/v1/runs/1%2Fevents", "/%2fhealthz"})
+        CHECK(ask(target).status == 404);
+    const auto layout = web_request(server.port(), "PUT", "/api/v1/layouts/day%2Fnight", R"({"view":"panel=tones"})");
+    CHECK(layout.status == 422);  // a name that no layout has; not a route that is none
+    CHECK_THAT(layout.body, Catch::Contains("name: 1 to 40 of letters"));
+    for (const char* target : {"/index.html%00.js", "/healthz%00", "http://localhost/%00"}) {
+        const auto reply = ask(target);
+        CHECK(reply.status == 400);
+        CHECK_THAT(reply.body, Catch::Contains("NUL character"));
+    }
+}
+
 TEST_CASE("a refusal names what would be accepted: the scheme of 401, the protocol of 426", "[http][access][R63]") {
     RunningServer server{RunningServer::WithAccounts{}};
     const auto ask = [&](const std::string& head, const std::string& more = "") {
@@ -181,6 +199,9 @@ TEST_CASE("responses to what is no request are counted too", "[http][metrics][R6
         const auto at = text.find(line);
         return at == std::string::npos ? 0 : std::stoi(text.substr(at + line.size()));
     };
+    for (const char* status : {"401", "429"})  // before the first: an alert's increase() begins there
+        CHECK_THAT(web_request(server.port(), "GET", "/metrics").body,
+                   Catch::Contains(fmt::format("{{route=\"POST /api/v1/session\",status=\"{}\"}} 0\n", status)));
     const std::string host = "Host: localhost\r\n";
     raw_exchange(server.port(), "this is not HTTP\r\n\r\n");
     raw_exchange(server.port(), "GET /healthz HTTP/1.1\r\n" + host + host + "\r\n");

@@ -145,7 +145,7 @@ TEST_CASE("every list of a run goes on by Link and Aeolis-Next-After, in each fo
                                           "/api/v1/runs/latest/events?after=3&text=as%20planned&limit=2&order=newest"));
     CHECK(link.empty());  // before 3 there is one
     CHECK(next_of(web_request(server->port(), "GET", "/api/v1/runs/latest/events?text=as%20planned&after=0&limit=2")) ==
-          "/api/v1/runs/latest/events?text=as%20planned&limit=2&after=16");
+          "/api/v1/runs/1/events?text=as%20planned&limit=2&after=16");  // another may begin between two pages
     CHECK(lines_of_all_pages(server->port(), "/api/v1/runs?format=jsonl&limit=1") == 1);
     CHECK(lines_of_all_pages(server->port(), "/api/v1/runs?format=jsonl&order=oldest") == 1);
 }
