@@ -80,12 +80,13 @@ export const LAYOUT = {
   ],
   /**
    * Parts of a timepoint's note that are left out of sentences: marks of a number's quality, (H), (M) and (L), the
-   * prediction, which has its own lane, and whose choice a number is.
+   * prediction, which has its own lane, whose choice a number is, and why the timeline can be held there.
    */
   noteMarks: [
     /\s*\([^()]*\b[HML]\b[^()]*\)/g,
     /^OD137\b.*$|[;:]\s*OD137 .*$/,
     /^chosen\b:?\s*|(^|[;,.]?\s+)(time |spacing )?chosen\b/gi,
+    /\s*Held for it: .*$/,
   ],
   /**
    * The comparison that the vehicle makes for a timepoint, shown until flight itself explains what holds it. `bound` is

@@ -4,7 +4,7 @@ import { LINK_STATUS, STATUS } from '../design/status';
 import { inWords } from '../run/dictionary';
 import { isWorst } from '../run/limits';
 import { fromEntry, duration } from '../run/time';
-import { stream } from '../run/connection';
+import { isLost, stream } from '../run/connection';
 import { cutoff, modeNow, pastRange, replay, runNow } from '../run/shown';
 import { badgeOf, clocksOf, headerLinks, latestSend, streamLine } from './model';
 import type { LinkLine } from './model';
@@ -109,7 +109,8 @@ export function Header() {
         <div class={`clock ${send.next.left_s < 60 ? 'late' : ''}`} data-testid="latest-send">
           <small>latest to send before “{inWords(send.next.name)}”</small>
           <output>
-            {send.next.at}, in {duration(send.next.left_s)}
+            {send.next.at}
+            {!isLost.value && `, in ${duration(send.next.left_s)}`}
           </output>
         </div>
       )}

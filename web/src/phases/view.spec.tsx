@@ -62,6 +62,7 @@ describe('the strip of phases', () => {
       [false, true].map((overdue) => nextWords(judged(overdue), 405)),
       'as the server says',
     ).toEqual(['parachute is due', 'parachute overdue since E+6:40']);
+    expect(nextWords(moved, NaN), 'while the clock stands still').toBe('parachute predicted E+6:40');
   });
   it('claims no phase before the vehicle has spoken', () => {
     expect(phaseSteps(aStore(), aDictionary, aPlan, Infinity).every((step) => step.state === 'ahead')).toBe(true);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The strip of phases, legible across a room.
+import { isLost } from '../run/connection';
 import { cutoff, dictionary, runNow, timepoints } from '../run/shown';
 import { fromEntry } from '../run/time';
 import { predicted } from '../timeline/now';
@@ -22,7 +23,9 @@ export function Phases() {
   const steps = phaseSteps(run, dictionary.value, plan, cutoff.value, foreseen);
   // The last phase of a landing that is over does not go on; of a past it does.
   const isOver = cutoff.value === Infinity && run?.run.outcome === 'touchdown';
-  const seen_e_s = run ? Math.min(run.seenSclk, cutoff.value) - run.entrySclk : NaN;
+  // without a connection the clock stands still, and nothing is counted down
+  const stands = isLost.value && cutoff.value === Infinity;
+  const seen_e_s = run && !stands ? Math.min(run.seenSclk, cutoff.value) - run.entrySclk : NaN;
   return (
     <ol class="phases" data-testid="phases" aria-label="Phases of the landing">
       {steps.map((step) => (

@@ -186,6 +186,7 @@ describe('the same as text', () => {
     expect(dueWords(100, 100.4).value).toBe('due');
     expect(dueWords(100, 103)).toEqual({ value: '+3 s', note: 'was predicted for ≈ E+1:40' });
     expect(dueWords(undefined, 3)).toEqual({ value: '—', note: 'time not predicted' });
+    expect(dueWords(100, NaN).value, 'while the clock stands still').toBe('E+1:40');
   });
 });
 

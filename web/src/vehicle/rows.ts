@@ -2,6 +2,7 @@
 // The facts of the picture as text: what it shows is never only there. Each with the age of an old value.
 import { staleWords } from '../channels/model';
 import { LAYOUT } from '../layout';
+import { isLost } from '../run/connection';
 import type { Dictionary } from '../run/dictionary';
 import { inWords } from '../run/dictionary';
 import { duration, fromEntry } from '../run/time';
@@ -127,6 +128,7 @@ export function dueWords(e_s: number | undefined, now_e_s: number): { value: str
   if (e_s === undefined) return { value: '—', note: 'time not predicted' };
   const left = e_s - now_e_s;
   const note = `≈ ${fromEntry(e_s)}`;
+  if (Number.isNaN(left)) return { value: fromEntry(e_s), note: 'predicted; the clock stands still' };
   if (left >= DUE_S) return { value: `≈ ${duration(left).replace(/\.\d s/, ' s')}`, note };
   if (left > -DUE_S) return { value: 'due', note };
   return { value: `+${duration(-left).replace(/\.\d s/, ' s')}`, note: `was predicted for ${note}` };
@@ -136,7 +138,8 @@ export function dueWords(e_s: number | undefined, now_e_s: number): { value: str
 export function figuresOf(look: Look, motion: Motion): Figure[] {
   const { altitude_m, speed_mps } = motion;
   const next = nextEvent(look);
-  const now_e_s = Math.min(look.run.seenSclk, look.cutoff) - look.run.entrySclk;
+  const stands = isLost.value && look.cutoff === Infinity;
+  const now_e_s = stands ? NaN : Math.min(look.run.seenSclk, look.cutoff) - look.run.entrySclk;
   const due = next ? dueWords(next.e_s, now_e_s) : { value: '—', note: 'the plan has no more' };
   const far = (altitude_m ?? 0) >= 10000;
   return [

@@ -11,6 +11,7 @@ import { inWords, numberText } from '../run/dictionary';
 import type { Dictionary } from '../run/dictionary';
 import type { CommandRow, RunStore } from '../run/store';
 import { duration, fromEntry, secondsOfErt } from '../run/time';
+import { isLost } from '../run/connection';
 import { DUE_S, roughly } from '../situation/countdown';
 import { entriesAt, isAmiss } from '../situation/model';
 import { heardOf, lastHeard, speaksOf } from '../timeline/heard';
@@ -192,7 +193,7 @@ export function waitingFor(
     return recordingDown(store, said.recording, plan.slice(last ? plan.indexOf(last) + 1 : 0), cutoff);
   const moment = momentsOf(store, plan, cutoff).find((each) => !each.done && each.before === main.name);
   const named = plan.slice(plan.indexOf(main) + 1).find((row) => isImportant(row.name));
-  const now = Math.min(store.seenSclk, cutoff);
+  const clock = clockAt(store, cutoff);
   const unheard = entriesAt(store, cutoff).find(({ rank, subject }) => rank === 'news' && subject === 'vehicle');
   const isPlanned = main.plannedES !== undefined;
   const title = `${isPlanned ? 'Next:' : unheard ? 'Predicted:' : 'Waiting for'} ${inWords(main.name)}`;
@@ -205,7 +206,7 @@ export function waitingFor(
     lines: unheard ? lines.map((line) => ({ ...line, holds: undefined })) : lines,
     ...(moment?.e_s !== undefined && {
       before: {
-        ...timeLine(`predicted at ${fromEntry(moment.e_s)}`, undefined, { e_s: moment.e_s }, now, store.entrySclk),
+        ...timeLine(`predicted at ${fromEntry(moment.e_s)}`, undefined, { e_s: moment.e_s }, clock, store.entrySclk),
         name: inWords(moment.name),
       },
     }),
@@ -442,7 +443,7 @@ export function conditions(
   cutoff: number,
   predicted: readonly Prediction[],
 ): Line[] {
-  const now = Math.min(store.seenSclk, cutoff);
+  const [now, clock] = [Math.min(store.seenSclk, cutoff), clockAt(store, cutoff)];
   const value = (names: readonly string[], within_s = Infinity): number | undefined => {
     const channel = dictionary.pick(names);
     const sample = channel && store.latest(channel.id, cutoff);
@@ -465,11 +466,11 @@ export function conditions(
     : row.anchor === '' && row.desiredOffsetS === 0
       ? `with ${before}`
       : `${offsetWords(row.desiredOffsetS)} ${base}`;
-  const time = timeLine(words, desired, foreseen, now, store.entrySclk);
+  const time = timeLine(words, desired, foreseen, clock, store.entrySclk);
   // a declaration holds only once it is reported by its firing
   const lines: Line[] = [declared && time.holds ? { words, value: 'is due', holds: false } : time];
   if (itsOwn && row.minimumOffsetS !== undefined && row.minimumOffsetS > 0 && row.anchor !== '') {
-    lines.push(timeLine(`${offsetWords(row.minimumOffsetS)} ${before}`, minimum, undefined, now, store.entrySclk));
+    lines.push(timeLine(`${offsetWords(row.minimumOffsetS)} ${before}`, minimum, undefined, clock, store.entrySclk));
   }
   const held = latestHeld(store, (fact) => speaksOf(fact, row), cutoff);
   if (held) return [...lines, ...conditionLines(held.conditions)];
@@ -501,6 +502,10 @@ function offsetWords(offset_s: number | undefined): string {
   return offset_s < 0 ? `${numberText(-offset_s)} s before` : `${numberText(offset_s)} s after`;
 }
 
+/** The clock that countdowns follow; NaN: it stands still, since there is no connection. */
+const clockAt = (store: RunStore, cutoff: number): number =>
+  isLost.value && cutoff === Infinity ? NaN : Math.min(store.seenSclk, cutoff);
+
 /** `due_sclk`: the vehicle's own time, NaN while it has none; `foreseen`: the server's prediction. */
 function timeLine(
   words: string,
@@ -510,7 +515,10 @@ function timeLine(
   entry_sclk: number,
 ): Line {
   const told = due_sclk !== undefined && !Number.isNaN(due_sclk);
-  const left = (told ? due_sclk - entry_sclk : (foreseen?.e_s ?? NaN)) - (now_sclk - entry_sclk);
+  const at_e_s = told ? due_sclk - entry_sclk : (foreseen?.e_s ?? NaN);
+  const left = at_e_s - (now_sclk - entry_sclk);
+  if (Number.isNaN(now_sclk) && !Number.isNaN(at_e_s))
+    return { words, value: `${told ? '' : 'predicted '}${fromEntry(at_e_s)}`, holds: undefined };
   if (told && left <= 0) return { words, value: fromEntry(due_sclk - entry_sclk, { tenths: true }), holds: true };
   if (Number.isNaN(left))
     return {

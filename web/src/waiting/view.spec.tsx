@@ -65,6 +65,7 @@ describe('waiting for', () => {
       ['Chosen (L)', 'Chosen (L): armed already', 'Its last use; time chosen (L)', 'OD137 (H)'].map(noteWords),
     ).toEqual(['', 'Armed already.', 'Its last use.', '']);
     expect(noteWords('By the clock (see the plan); 75 kg (M)')).toBe('By the clock (see the plan); 75 kg.');
+    expect(noteWords('Its last use; time chosen (L). Held for it: nothing is due for 27 s')).toBe('Its last use.');
   });
   it('asks for no command that the vehicle’s status still speaks against', () => {
     const waiting = (against?: Against) =>
@@ -240,6 +241,22 @@ describe('waiting for', () => {
     expect(new Set(classes())).toEqual(new Set(['unknown']));
     useForTest(undefined, undefined);
     timepoints.value = [];
+  });
+  it('counts nothing down while there is no connection, since its clock stands still', () => {
+    const store = aStore([
+      ...commanded,
+      firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 880 }),
+      samples(899, { 1: 0, 2: 1000 }),
+    ]);
+    const lines = () => waitingFor(store, aDictionary, aPlan, Infinity).lines.map(({ value, holds }) => [value, holds]);
+    const foreseen = () => {
+      const next = { id: 1, name: 'entry_interface', e_s: 30, fired: false };
+      return waitingFor(aStore(commanded), aDictionary, aPlan.slice(1), Infinity, [next]).lines[0]?.value;
+    };
+    expect([lines()[0], foreseen()]).toEqual([[expect.stringMatching(/^in /), false], expect.stringMatching(/^in ≈ /)]);
+    stream.value = { ...stream.value, state: 'lost' };
+    expect([lines()[0], foreseen()]).toEqual([[expect.stringMatching(/^E\+0:00/), undefined], 'predicted E+0:30']);
+    stream.value = { ...stream.value, state: 'live' };
   });
   it('says of a mission whose commands are not here that there is nothing to press', () => {
     const listening = (dictionary: typeof aDictionary, items: Parameters<typeof aStore>[0] = []) => {
