@@ -65,14 +65,14 @@ const room = new AsOf<{ board: Board; acts: { seq: string }[] }, Room>(
 export const refreshPositions = (): Promise<void> => room.refresh();
 
 /** The newest that is known, also while a past is shown. */
-const newest = computed<Board | undefined>(() => {
+export const boardNow = computed<Board | undefined>(() => {
   void tick.value;
   const [known, heard] = [room.value.value, store.value?.positions];
   return heard && heard.seq > (known?.seq ?? 0) ? heard.board : known?.board;
 });
 /** The room at the instant shown; undefined: not known, or the server has no positions. */
 export const board = computed<Board | undefined>(() =>
-  cutoff.value === Infinity ? newest.value : room.value.value?.board,
+  cutoff.value === Infinity ? boardNow.value : room.value.value?.board,
 );
 
 /** Whether nobody has taken a position yet. */
@@ -87,14 +87,14 @@ export const lacksName = (): boolean => myName() === '';
 /** The positions that this person holds now. */
 export const mySeats = computed<string[]>(() => {
   const me = myName();
-  return me === '' ? [] : (newest.value?.seats ?? []).filter(({ by }) => by === me).map(({ position }) => position);
+  return me === '' ? [] : (boardNow.value?.seats ?? []).filter(({ by }) => by === me).map(({ position }) => position);
 });
 
 /** The positions from which this person acts in procedures: a flight director stands in for those that are vacant. */
 export const myPositions = computed<string[]>(() => {
   const mine = mySeats.value;
   if (!mine.includes(DIRECTOR)) return mine;
-  const vacant = (newest.value?.seats ?? []).filter(({ by }) => by === '').map(({ position }) => position);
+  const vacant = (boardNow.value?.seats ?? []).filter(({ by }) => by === '').map(({ position }) => position);
   return [...mine, ...vacant];
 });
 

@@ -18,8 +18,9 @@ import { aBatch, aDictionary, aRun, aStore, ertUs } from '../testing/fixtures';
 import { aBoard, aPoll, aRoom, aSeat, acted, anAnswer, positionAct, said } from '../testing/positions';
 import { anExecution, aStep, inItem } from '../testing/procedures';
 import { aServer } from '../testing/server';
+import { AskedHere } from './asked';
 import { board, myPositions, offeredOf, problem, refreshPositions } from './model';
-import type { Board } from './model';
+import type { Answer, Board } from './model';
 import css from './style.css?raw';
 import { Room } from './view';
 
@@ -468,4 +469,41 @@ it('on a telephone each row of the room wraps, and none is wider than the panel 
   for (const row of ['.room-head', '.room-poll', '.seat']) expect(rule(row)).toContain('flex-wrap: wrap');
   expect(rule('.seats')).toContain('minmax(min(100%, 230px), 1fr)');
   expect(css).not.toMatch(/overflow: (hidden|clip)|(?<![\w-])(min-)?width: [1-9]/);
+});
+
+describe('the banner', () => {
+  const heard = (seats: Board['seats'], fields: Partial<Board> = {}) => {
+    const run = aStore();
+    run.positions = { seq: 3, board: aBoard(seats, fields) };
+    useForTest(run, aDictionary);
+    settled(() => render(<AskedHere />, root));
+    return words();
+  };
+  const seats = [aSeat('flight_director', 'Ben'), aSeat('command', 'Ann')];
+  const polled = (...answers: Answer[]) => ({
+    poll: aPoll({ by: 'Ben', answers }),
+  });
+  it('asks the position that has not answered a poll, and nobody else', () => {
+    const asked = '▷ Command, go or no go: “do EDL”?answer 8';
+    expect(heard(seats, polled(anAnswer('command', 'Ann')))).toBe(asked);
+    expect(heard(seats, polled(said('command', 'Ann', true))), 'it has answered').toBe('');
+    expect(heard(seats, polled(anAnswer('gnc', 'Carl'))), 'another is asked').toBe('');
+    const decided = {
+      poll: { ...polled(anAnswer('command', 'Ann')).poll, decision: said('flight_director', 'Ben', true) },
+    };
+    expect(heard(seats, decided), 'it is decided').toBe('');
+    pastRange.value = { from: 0, to: 10 };
+    expect(heard(seats, polled(anAnswer('command', 'Ann'))), 'nothing can be said in a past view').toBe('');
+  });
+  it('asks the flight director once all have answered', () => {
+    uplink.value = { ...AT_ONCE, controller: 'Ben' };
+    expect(heard(seats, polled(anAnswer('command', 'Ann')))).toBe('');
+    expect(heard(seats, polled(said('command', 'Ann', false)))).toBe(
+      '▷ Flight director, all have answered: “do EDL”?answer 8',
+    );
+  });
+  it('tells of a position that is offered, to the one to whom it is', () => {
+    expect(heard([aSeat('gnc', 'Ben', { offered_to: 'Ann' })])).toBe('▷ Ben offers you GNCanswer 8');
+    expect(heard([aSeat('gnc', 'Ben', { offered_to: 'Carl' })])).toBe('');
+  });
 });

@@ -5,9 +5,10 @@ import { act } from 'preact/test-utils';
 import { describe, expect, it } from 'vitest';
 import { useForTest } from '../run/session';
 import { aDictionary, aRun, aStore, situation } from '../testing/fixtures';
+import { aBoard, aSeat } from '../testing/positions';
 import { countdownWords, roughly } from './countdown';
 import { listShown, lookOf, situationOf } from './model';
-import { Situation } from './view';
+import { Lasting, Situation } from './view';
 
 // The fixtures' run: SCLK 900 is heard at 05:00:00, entry is at 1000, that is at 05:01:40.
 const BLACKOUT = {
@@ -93,6 +94,25 @@ describe('the banner', () => {
     const { first, more } = situationOf(store, Infinity, undefined);
     expect([first, ...more].map((line) => line && lookOf(line))).toEqual(['holds', 'quiet', 'quiet']);
   });
+});
+
+it('commanding that the room has closed is a mark beside the badge, and a sentence in the list', () => {
+  const run = aStore();
+  run.positions = { seq: 3, board: aBoard([aSeat('flight_director', 'Ben')], { closed: 'no poll was called' }) };
+  const root = document.createElement('div');
+  act(() => {
+    useForTest(run, aDictionary);
+    render(<Lasting />, root);
+  });
+  const mark = () => [...root.querySelectorAll('li')].map(({ textContent, title }) => [textContent, title]);
+  expect(mark()).toEqual([['Commanding is closed', 'Commanding is closed: no poll was called']]);
+  act(() => {
+    run.positions = { seq: 4, board: aBoard([aSeat('flight_director', 'Ben')]) };
+    useForTest(run, aDictionary);
+    render(<Lasting />, root);
+  });
+  expect(mark()).toEqual([]);
+  act(() => render(null, root));
 });
 
 describe('the list of what else matters', () => {

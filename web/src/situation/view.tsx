@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The banner: the one thing that matters most now, as a sentence, with what it counts down to.
 import { armedHere, armedLeft_s } from '../commands/armed';
+import { openedLater } from '../design/opened_later';
 import { STATUS } from '../design/status';
-import { modeNow, runNow } from '../run/shown';
+import { modeNow, runNow, takesActs } from '../run/shown';
 import { duration, fromEntry } from '../run/time';
 import { LOOKS, aside, listShown, lookOf, pointAt, putAside, situationNow, toggleList } from './model';
 import type { Line } from './model';
@@ -60,6 +61,9 @@ function ArmedHere() {
   );
 }
 
+/** Of a room in which somebody has taken a position. */
+const AskedHere = openedLater(async () => (await import('../positions/asked')).AskedHere);
+
 export function Situation() {
   const run = runNow();
   const { first, more } = situationNow(run);
@@ -81,6 +85,7 @@ export function Situation() {
       aria-label="situation"
     >
       <ArmedHere />
+      {run?.positions && <AskedHere />}
       <span class="situation-shape" aria-hidden="true">
         {STATUS[look].shape}
       </span>
@@ -129,10 +134,14 @@ export function Situation() {
 }
 
 /** What lasts. Where nothing can be sent, nobody needs to know that it would be too late. */
-const lastingNow = (run: ReturnType<typeof runNow>) =>
-  situationNow(run).lasting.filter(
+function lastingNow(run: ReturnType<typeof runNow>) {
+  const all = situationNow(run).lasting.filter(
     ({ subject }) => subject !== 'commanding' || ['live', 'rehearsal'].includes(modeNow()),
   );
+  const closed = takesActs() ? run?.positions?.board.closed : '';
+  const words = 'Commanding is closed';
+  return closed ? [...all, { subject: 'room', words, sentence: `${words}: ${closed}` }] : all;
+}
 
 /** The states that last, beside the badge. */
 export function Lasting() {
