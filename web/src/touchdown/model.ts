@@ -5,6 +5,7 @@ import { predictedEvent, prediction } from '../prediction/model';
 import { asHeard, cutoff, runNow } from '../run/shown';
 import { read } from '../run/connection';
 import { fromEntry } from '../run/time';
+import { entriesAt } from '../situation/model';
 import { RECORDING_LINK } from '../vehicle/layout';
 import type { Look } from '../vehicle/model';
 import { touchdownAnswer, touchdownKnown } from './shown';
@@ -12,7 +13,7 @@ import type { TouchdownReport } from './shown';
 
 const EVERY_MS = 1000; // chosen: while the run or a replay goes on, so do its steps
 let underWay = false;
-let last = { question: '', at_ms: -Infinity };
+let last = { question: '', said: '', at_ms: -Infinity };
 
 /** Asks for the touchdown at the instant shown, if that has another question or the run goes on. */
 export async function refreshTouchdown(): Promise<void> {
@@ -22,12 +23,14 @@ export async function refreshTouchdown(): Promise<void> {
   const parts = [at === Infinity ? '' : `at=${at}`, live ? 'recorded=false' : ''].filter((part) => part !== '');
   const path = `/runs/${run.id}/touchdown?${parts.join('&')}`;
   const question = `${path} ${run.going} ${run.run.relayProgress === 1}`;
-  const isFresh = performance.now() - last.at_ms < EVERY_MS;
+  // What the banner says of it is asked for at once, so that the card says the same.
+  const said = entriesAt(run, at).find(({ subject }) => subject === 'landed')?.sentence ?? '';
+  const isFresh = said === last.said && performance.now() - last.at_ms < EVERY_MS;
   if (touchdownKnown.value && (question === last.question ? isFresh || !run.going : isFresh)) return;
   underWay = true;
   try {
     const report = await read<TouchdownReport>(path);
-    last = { question, at_ms: performance.now() };
+    last = { question, said, at_ms: performance.now() };
     if (runNow()?.id === run.id) touchdownAnswer.value = { at, live, report };
   } catch {
     // the next round asks again

@@ -5,7 +5,8 @@ import { act } from 'preact/test-utils';
 import { describe, expect, it } from 'vitest';
 import { useForTest } from '../run/session';
 import { pastRange, timepoints } from '../run/shown';
-import { ENTRY_SCLK } from '../testing/fixtures';
+import { ColumnCollector } from '../stream/columns';
+import { ENTRY_SCLK, aBatch, situation } from '../testing/fixtures';
 import { aServer } from '../testing/server';
 import { lookAt, vehicleDictionary, vehiclePlan } from '../testing/vehicle';
 import { compass, refreshTouchdown, restOf, resultsOf } from './model';
@@ -83,6 +84,23 @@ it('a past view asks for its own instant as it was heard, and shows no answer th
   expect(touchdownKnown.value).toBeUndefined();
   pastRange.value = undefined;
   expect(touchdownKnown.value).toBeUndefined();
+});
+
+it('the card is asked for anew as soon as the banner says another thing of the touchdown', async () => {
+  const landed = (sentence: string) => situation('2012-219T05:08:50.0', { rank: 'news', subject: 'landed', sentence });
+  const { run } = lookAt(DOWN + 15, [landed('Touchdown reported at E+7:10')]);
+  act(() => useForTest(run, vehicleDictionary));
+  const path = 'GET /runs/1/touchdown?';
+  server.routes[path] = { json: REPORT };
+  await refreshTouchdown();
+  server.routes[path] = { json: { ...REPORT, verdict: 'confirmed' } };
+  await refreshTouchdown();
+  expect(touchdownKnown.value?.verdict, 'asked for a moment ago').toBe('reported');
+  const heard = new ColumnCollector();
+  heard.add(aBatch([landed('Touchdown confirmed, at E+7:10')]));
+  run.add(heard.take());
+  await refreshTouchdown();
+  expect(touchdownKnown.value?.verdict).toBe('confirmed');
 });
 
 it('the card says the verdict, each step with its evidence, and leads on', () => {
