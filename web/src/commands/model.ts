@@ -241,7 +241,12 @@ export function conditionWords(text: string): { words: string; value: string } {
   const words = name.replaceAll('_', ' ');
   return fact === undefined
     ? { words: `${words} ${RELATIONS[relation] ?? relation} ${bound}`, value }
-    : { words: `${words}: must be ${fact}`, value: value.replace(/^is ([01])$/, (_, of: string) => `is ${FACTS[of]}`) };
+    : value === `is ${bound}`
+      ? { words: `${words}: ${fact}, as it must be`, value: '' }
+      : {
+          words: `${words}: must be ${fact}`,
+          value: value.replace(/^is ([01])$/, (_, of: string) => `is ${FACTS[of]}`),
+        };
 }
 
 /** By their numbers in the schema, like STATUSES, so that the page need not load the schema. */

@@ -184,6 +184,7 @@ describe('what is asked of the uplink', () => {
     expect(conditionWords('parameters_received == 1: not known, no value has come').value).toBe(
       'not known, no value has come',
     );
+    expect(conditionWords('edl_enabled == 0: is 0')).toEqual({ words: 'edl enabled: no, as it must be', value: '' });
     expect(conditionWords('speed_mps <= 405: is 1')).toEqual({ words: 'speed mps ≤ 405', value: 'is 1' });
   });
 });

@@ -94,7 +94,7 @@ function drawAxes({ context: c, width, height, colours }: Surface, { x, y }: Sca
   for (const mps of [1, 10, 100, 1000]) {
     line(c, Math.round(x(mps)) + 0.5, 12, Math.round(x(mps)) + 0.5, bottom);
     if (x(100) - x(10) > 52 || Math.log10(mps) % 2 === 0)
-      c.fillText(mps >= 1000 ? `${mps / 1000} km/s` : `${mps} m/s`, x(mps), bottom + 13);
+      c.fillText(mps >= 1000 ? `${mps / 1000} km/s` : `${mps} m/s`, x(mps), bottom + AXIS_NAME_PX);
   }
   c.font = `${TYPE.table}px ${colours.sans}`;
   c.textAlign = 'right';
@@ -103,6 +103,7 @@ function drawAxes({ context: c, width, height, colours }: Surface, { x, y }: Sca
   c.fillText('← slower', LEFT, bottom + 31);
 }
 
+const AXIS_NAME_PX = 13; // below the picture
 const PREDICTED_PX = 7; // chosen: seen from across the room, and no width of anything predicted
 
 /** Draws the predicted path first, under everything else. */
@@ -128,7 +129,9 @@ function drawPredicted({ context: c, width, height, colours }: Surface, { x, y }
   // The expected end.
   c.lineWidth = 2;
   c.strokeStyle = colours.dim;
-  for (const radius of [9, 16]) {
+  // not so large that it touches the names of the axis
+  const outer = Math.min(16, height - BOTTOM + AXIS_NAME_PX - TYPE.mark / 2 - y(last.altitude_m) - 2);
+  for (const radius of [(outer * 9) / 16, outer]) {
     c.beginPath();
     c.arc(x(last.speed_mps), y(last.altitude_m), radius, 0, 7);
     c.stroke();

@@ -38,11 +38,11 @@ export function Events() {
             </span>
           )}
           {alarms > 0 && (
-            <b class="status-alarm">
+            <b class="status-alarm" title={warnings > 0 ? `and ${warnings} of a warning` : undefined}>
               {STATUS.alarm.shape} {alarms} alarm {alarms === 1 ? 'event' : 'events'}
             </b>
           )}
-          {warnings > 0 && (
+          {warnings > 0 && alarms === 0 && (
             <b class={`warnings ${lines.some(({ level, alarm }) => !alarm && WORST.has(level)) ? 'status-alarm' : ''}`}>
               ▲ {warnings} warning {warnings === 1 ? 'event' : 'events'}
             </b>

@@ -201,7 +201,7 @@ export function guideStep(
       : pace > FAST
         ? [{ key: '−', words: 'to 10× or less, to see it happen' }]
         : amiss
-          ? [{ key: 'm', words: 'opens the list, where more matters than the line says' }]
+          ? [{ key: 'm', words: 'lists all that matters now' }]
           : isSilent(run, until)
             ? [{ words: 'Watch the dashed ring: there it is predicted now.' }]
             : [{ words: 'Watch the dot come down the grey line, the predicted path.' }];

@@ -110,10 +110,13 @@ export function toneEvidence(tone: NamedTone | undefined, link?: NamedLink): str
     return `tones have not begun${link.reason.slice(link.reason.indexOf(':'))}`;
   if (!tone) return 'one of 256, each for 10 s';
   const parts: string[] = [];
-  if (tone.tone !== undefined) parts.push(`likelihood ${tone.likelihood.toFixed(3)}`);
-  if (tone.runnerUp !== undefined) parts.push(`next ${tone.runnerUp} at ${tone.runnerUpLikelihood.toFixed(3)}`);
+  if (tone.tone !== undefined) parts.push(`likelihood ${posteriorText(tone.likelihood)}`);
+  if (tone.runnerUp !== undefined) {
+    const next = tone.runnerUpLikelihood;
+    parts.push(`next ${tone.runnerUp} ${next < 0.0005 ? 'below 0.001' : `at ${next.toFixed(3)}`}`);
+  }
   parts.push(lockInWords(tone));
-  if (tone.dopplerHz !== 0) parts.push(`Doppler ${(tone.dopplerHz / 1000).toFixed(1)} kHz`);
-  if (tone.model !== '') parts.push(tone.model);
+  if (tone.dopplerHz !== 0) parts.push(`Doppler ${(tone.dopplerHz / 1000).toFixed(1).replace('-', '−')} kHz`);
+  if (tone.model === 'statistical') parts.push('drawn by a statistical model');
   return parts.join(' · ');
 }

@@ -53,7 +53,16 @@ describe('tones', () => {
     ]);
     expect(toneTitle(latestTone(store, Infinity))).toBe('Tone 7 · Entry interface');
     expect(toneEvidence(latestTone(store, Infinity))).toBe(
-      'likelihood 0.998 · next 8 at 0.001 · ■ lock, 22.0 dB-Hz · statistical',
+      'likelihood 0.998 · next 8 at 0.001 · ■ lock, 22.0 dB-Hz · drawn by a statistical model',
+    );
+  });
+  it('never call a tone certain, and say nothing of a signal that was received', () => {
+    const sure = { likelihood: 0.99999, runnerUp: 8, runnerUpLikelihood: 0.00001 };
+    const store = aStore([
+      tone({ sclk: 700, tone: 7, ...sure, locked: true, cN0Dbhz: 22, dopplerHz: -429200, model: 'signal' }),
+    ]);
+    expect(toneEvidence(latestTone(store, Infinity))).toBe(
+      'likelihood above 0.999 · next 8 below 0.001 · ■ lock, 22.0 dB-Hz · Doppler −429.2 kHz',
     );
   });
   it('tell of a tone that is long past as the last one, with its time, not as what the vehicle says now', () => {
