@@ -1,9 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // Renews the pictures of the twelve moments that a console is judged by, at two sizes of a browser's window, from the
-// real program: node tests/browser/moments.mjs [MOMENT]...
+// real program: node tests/browser/moments.mjs [MOMENT]... The rehearsal is held, so that both sizes show one instant.
 import { mkdirSync } from 'node:fs';
 import path from 'node:path';
-import { browser, flyTo, open, root, serve, temporaryFolder, waitFor } from './support.mjs';
+import {
+  browser,
+  comesToRest,
+  control as order,
+  flyTo,
+  open,
+  root,
+  secondsFromEntry,
+  serve,
+  temporaryFolder,
+  waitFor,
+} from './support.mjs';
 
 const pictures = path.join(root, 'docs/pictures/moments');
 const SIZES = [
@@ -25,9 +36,8 @@ async function play(scenario, moments) {
     archive: path.join(folder, `${plays}.db`),
     more: ['--scenario', scenario, '--pace', '1'],
   });
-  const { page, shows } = await open(chrome, server.address, SIZES[0]);
-  const control = (body) =>
-    fetch(`${server.address}/api/v1/rehearsals/current`, { method: 'POST', body: JSON.stringify(body) });
+  const { page, shows, text } = await open(chrome, server.address, SIZES[0]);
+  const control = (body) => order(server, body);
   try {
     await shows('stream-state', /connected[^]*complete through [1-9]/, 60_000);
     await waitFor(
@@ -36,7 +46,7 @@ async function play(scenario, moments) {
       120_000,
     );
     for (const [name, bring] of moments) {
-      await bring({ server, page, shows, control });
+      await bring({ server, page, shows, text, control });
       if (wanted.size > 0 && !wanted.has(name)) continue;
       for (const size of SIZES) {
         await page.setViewportSize(size);
@@ -48,7 +58,7 @@ async function play(scenario, moments) {
         // what is predicted of the time ahead, where there is any
         const isThere = () => Number(document.querySelector('.plot')?.dataset.predicted) > 0;
         await page.waitForFunction(isThere, undefined, { timeout: 8000 }).catch(() => undefined);
-        await page.waitForTimeout(1500); // for what is asked after a resize, and a draw after it
+        await comesToRest(page);
         await page.screenshot({ path: path.join(pictures, `${name}_${size.width}.png`) });
       }
       await page.setViewportSize(SIZES[0]);
@@ -60,18 +70,18 @@ async function play(scenario, moments) {
   }
 }
 
-/** To `e_s` and on at the pace of real time, for what is to be seen live. */
-const on =
-  (e_s) =>
-  async ({ server, control }) => {
+/** To `e_s`, until the banner says it. */
+const at =
+  (e_s, says) =>
+  async ({ server, shows }) => {
     await flyTo(server, e_s);
-    await control({ pace: 1 });
-    await control({ pause: false });
+    await shows('badge', /paused/);
+    await shows('situation-sentence', says);
   };
 
 try {
   await play('nominal', [
-    ['first_open', ({ shows }) => shows('guide', /Tell the vehicle where it is/)],
+    ['first_open', ({ shows }) => shows('guide', /Tell the vehicle where it is/)], // by itself: it goes on
     [
       'armed',
       async ({ page, shows }) => {
@@ -91,21 +101,27 @@ try {
     ],
   ]);
   await play('nominal_auto', [
-    ['cruise', on(-700)],
-    ['blackout', on(70)],
-    ['parachute', on(264)],
-    ['powered_descent', on(385)],
-    ['touchdown', on(441)],
+    ['cruise', at(-700, /entry antenna/)],
+    ['blackout', at(70, /plasma blackout/)],
+    ['parachute', at(264, /Waiting for/)],
+    ['powered_descent', at(385, /Waiting for/)],
+    [
+      'touchdown',
+      async (of) => {
+        await at(441, /Touchdown reported/)(of);
+        await of.shows('touchdown', /Touchdown reported/);
+      },
+    ],
     [
       'recording_comes_down',
-      async ({ server, page }) => {
-        await flyTo(server, 480);
-        await page.waitForTimeout(500);
+      async (of) => {
+        await at(480, /The recording comes down/)(of);
+        await of.shows('touchdown', /Touchdown confirmed/);
       },
     ],
     [
       'day_after',
-      async ({ server, page, control }) => {
+      async ({ server, shows, control }) => {
         await control({ pace: 100 });
         await control({ pause: false });
         await waitFor(
@@ -113,29 +129,33 @@ try {
           (state) => state === 'finished',
           180_000,
         );
-        await page.waitForTimeout(2000);
+        await shows('situation-sentence', /The recording is complete/);
+        await shows('guide', /You have landed it/);
       },
     ],
     [
       'replay',
-      async ({ page, shows }) => {
+      async ({ page, shows, text }) => {
         await page.keyboard.press('y'); // from the beginning of the landing's timeline
         await shows('badge', /REPLAY, NOT LIVE/);
-        await page.waitForTimeout(20_000);
+        await waitFor(
+          () => text('clock-entry'),
+          (value) => secondsFromEntry(value) > 145,
+        );
         await page.keyboard.press('p');
+        await shows('replay-play', /play/);
       },
     ],
   ]);
-  await play('second_chance', [['backup_took_over', on(118)]]);
+  await play('second_chance', [['backup_took_over', at(118, /Flying on backup computer B/)]]);
   await play('nominal_auto', [
     [
       'station_lost',
-      async ({ server, control }) => {
+      async ({ server, shows, control }) => {
         await flyTo(server, 180);
         await control({ inject: { station_outage: { duration_s: 60 } } });
-        await control({ pace: 1 });
-        await control({ pause: false });
-        await new Promise((resolve) => setTimeout(resolve, 8000));
+        await flyTo(server, 188);
+        await shows('situation-sentence', /A fault on the ground/);
       },
     ],
   ]);

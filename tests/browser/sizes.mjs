@@ -141,6 +141,33 @@ STATES.past = async (serve, t) => {
   };
 };
 
+/** A poll that asks this person, from a position offered and taken: its line stands in the banner. */
+STATES.poll = async (serve, t) => {
+  const server = await serve(t, 'poll', ['--scenario', 'nominal_auto', '--pace', '10']);
+  const post = async (body) => {
+    const answer = await fetch(`${server.address}/api/v1/runs/1/positions`, {
+      method: 'POST',
+      body: JSON.stringify(body),
+    });
+    if (!answer.ok) throw new Error(`${body.kind}: ${answer.status} ${await answer.text()}`);
+  };
+  await flyTo(server, -700);
+  await post({ kind: 'take', position: 'flight_director', by: 'A. Ng' });
+  await post({ kind: 'take', position: 'command', by: 'Ida' });
+  await post({ kind: 'poll', position: 'flight_director', by: 'A. Ng', subject: 'entry, descent and landing' });
+  return {
+    server,
+    reach: async ({ page, shows }) => {
+      await page.getByTestId('tab-procedures').click();
+      await page.getByTestId('signature').fill('Ida');
+      await page.getByTestId('signature').press('Enter');
+      await page.getByTestId('tab-channels').click();
+      await shows('asked-here', /Command, go or no go: “entry, descent and landing”\?/);
+      await shows('lasting', /Commanding is closed/);
+    },
+  };
+};
+
 /** A row of the situation, where the page has none now: what is measured must hold with it. */
 function takeItsRow() {
   if (document.querySelector('.situation')) return;
@@ -149,13 +176,37 @@ function takeItsRow() {
   document.querySelector('.console').append(row);
 }
 
-/** What is not whole of a page at each size, in words. */
+/**
+ * Runs in the page: what draws the eye before what matters does, in words: a phase that is larger than the banner's
+ * first words, and two scrollbars of one panel beside each other.
+ */
+function outOfOrder() {
+  const px = (element) => parseFloat(getComputedStyle(element).fontSize);
+  const [banner, phase] = ['.situation b', '.phase-now b'].map((each) => document.querySelector(each));
+  const first = document.querySelector('.armed-here') ?? banner;
+  const found = [];
+  const isLong =
+    document.querySelector('.situation')?.matches('.situation-long, :has(.asked-here)') && first === banner;
+  if (first && phase && !isLong && px(phase) > px(first))
+    found.push(`the phase has ${px(phase)} px, what matters most ${px(first)} px`);
+  const scrolls = (element) =>
+    /auto|scroll/.test(getComputedStyle(element).overflowY) && element.scrollHeight > element.clientHeight + 1;
+  for (const inner of document.querySelectorAll('.panel .table-scroll')) {
+    const outer = inner.parentElement.closest('.table-box, .panel-body');
+    if (outer && inner.checkVisibility() && scrolls(inner) && scrolls(outer))
+      found.push(`${inner.ariaLabel} scrolls within a panel that scrolls`);
+  }
+  return found;
+}
+
+/** What is not whole or not in order of a page at each size, in words. */
 async function measuredAt(page, state, sizes) {
   const found = [];
   for (const [width, height] of sizes) {
     await page.setViewportSize({ width, height });
     await comesToRest(page);
-    found.push(...(await page.evaluate(notWhole)).map((words) => `${state}, ${width} × ${height}: ${words}`));
+    const all = [...(await page.evaluate(notWhole)), ...(await page.evaluate(outOfOrder))];
+    found.push(...all.map((words) => `${state}, ${width} × ${height}: ${words}`));
   }
   return found;
 }

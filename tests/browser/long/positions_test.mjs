@@ -79,10 +79,16 @@ test('a command leaves after the go of the poll alone, a no go ends it, and comm
   await controller.page.keyboard.press('Escape');
   await controller.page.keyboard.press('Escape');
 
+  await controller.shows('lasting', /Commanding is closed/);
+  await controller.page.getByTestId('tab-channels').click();
   await director.press('call a poll: Flight director');
   await director.page.keyboard.type('parameters');
   await director.page.keyboard.press('Enter');
   await director.shows('room-decision', /polling/);
+  // Who is asked is told in the banner, whatever the panel shows, and is led to the answer.
+  await controller.shows('asked-here', /Command, go or no go: “parameters”\?/);
+  assert.equal(await director.page.getByTestId('asked-here').count(), 0, 'nobody else is asked');
+  await controller.page.getByRole('button', { name: 'answer' }).click();
   await controller.shows('room-poll', /parameters[^]*poll called by ann/);
   await waitFor(() => controller.seat('command').innerText(), /□ not answered/);
   for (const { page } of [director, controller]) assert.deepEqual(await findings(page, 'dark'), []);
@@ -99,6 +105,8 @@ test('a command leaves after the go of the poll alone, a no go ends it, and comm
   await waitFor(() => controller.page.evaluate(() => document.activeElement?.dataset.positionAct), /^go$/);
   await controller.page.keyboard.press('Enter');
   await waitFor(() => director.seat('command').innerText(), /✓ go/);
+  await controller.page.getByTestId('asked-here').waitFor({ state: 'detached' });
+  await director.shows('asked-here', /Flight director, all have answered: “parameters”\?/);
   await director.press('go: Flight director');
   await director.shows('room-decision', /✓ GO/);
   await controller.shows('room-decision', /✓ GO/);

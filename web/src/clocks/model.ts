@@ -151,12 +151,13 @@ const STREAM_WORDS: Record<StreamState, string> = {
   lost: 'NO CONNECTION',
 };
 
-export function streamLine(state: StreamState, attempt: number, gaps: number): LinkLine {
+/** That what is shown is old, and which attempt this is, the banner says. */
+export function streamLine(state: StreamState, gaps: number): LinkLine {
   return {
     name: STREAM_WORDS[state],
     short: '',
     look: state === 'live' ? 'up' : state === 'lost' ? 'lost' : 'unknown',
-    detail: state === 'lost' ? `what is shown is old; attempt ${attempt}` : gaps > 0 ? `gaps ${gaps}` : '',
+    detail: gaps > 0 ? `gaps ${gaps}` : '',
   };
 }
 

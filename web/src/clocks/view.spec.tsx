@@ -72,7 +72,7 @@ describe('the header', () => {
     ].map((badge) => badge.title);
     expect(titles).toEqual(['NO RUN', 'REHEARSAL', 'PAST, NOT LIVE', 'ENDED RUN', 'INTERRUPTED RUN']);
   });
-  it('says why a link is silent, and that a lost connection shows old things', () => {
+  it('says why a link is silent, and that there is no connection', () => {
     const store = aStore([link({ link: 'uhf_live', up: false, reason: 'plasma outage', ert: '2012-219T04:59:00.0' })]);
     expect(linksOf(store, Infinity)).toEqual([
       { name: 'UHF', look: 'down', detail: 'silent: plasma outage', short: 'silent: plasma outage' },
@@ -84,7 +84,7 @@ describe('the header', () => {
       Infinity,
     );
     expect([whole?.short, whole?.detail]).toEqual(['silent: Earth set', 'silent: Earth set: predicted at E+4:57']);
-    expect(streamLine('lost', 3, 0)).toMatchObject({ look: 'lost', detail: 'what is shown is old; attempt 3' });
+    expect(streamLine('lost', 0)).toMatchObject({ name: 'NO CONNECTION', look: 'lost', detail: '' });
   });
   it('keeps a link that the plan has off out of the header, until it is due or lost', () => {
     const kindOf = (reason: string) =>

@@ -124,10 +124,7 @@ export function Header() {
           headerLinks(run, cutoff.value, stream.value.state === 'lost').map((line) => (
             <Link key={line.name} line={line} testId={`link-${line.name}`} />
           ))}
-        <Stream
-          line={streamLine(stream.value.state, stream.value.attempt, stream.value.gaps)}
-          through={run?.completeThrough}
-        />
+        <Stream line={streamLine(stream.value.state, stream.value.gaps)} through={run?.completeThrough} />
         <Who />
       </div>
       <button

@@ -88,7 +88,7 @@ function drawAxes({ context: c, width, height, colours }: Surface, { x, y }: Sca
     line(c, LEFT, Math.round(y(m)) + 0.5, width - RIGHT, Math.round(y(m)) + 0.5);
     // where decades are narrow, every second one has its name
     if (y(10) - y(100) > TYPE.mark + 3 || Math.log10(m) % 2 === 1)
-      c.fillText(m >= 1000 ? `${m / 1000} km` : `${m} m`, LEFT - 8, y(m));
+      c.fillText(m >= 1000 ? `${m / 1000} km` : `${m} m`, LEFT - AXIS_GAP_PX, y(m));
   }
   c.textAlign = 'center';
   for (const mps of [1, 10, 100, 1000]) {
@@ -103,7 +103,9 @@ function drawAxes({ context: c, width, height, colours }: Surface, { x, y }: Sca
   c.fillText('← slower', LEFT, bottom + 31);
 }
 
-const AXIS_NAME_PX = 13; // below the picture
+// the names of the axes: so far below the picture, and beside it
+const AXIS_NAME_PX = 13;
+const AXIS_GAP_PX = 8;
 const PREDICTED_PX = 7; // chosen: seen from across the room, and no width of anything predicted
 
 /** Draws the predicted path first, under everything else. */
@@ -130,7 +132,11 @@ function drawPredicted({ context: c, width, height, colours }: Surface, { x, y }
   c.lineWidth = 2;
   c.strokeStyle = colours.dim;
   // not so large that it touches the names of the axis
-  const outer = Math.min(16, height - BOTTOM + AXIS_NAME_PX - TYPE.mark / 2 - y(last.altitude_m) - 2);
+  const [below, left] = [
+    height - BOTTOM + AXIS_NAME_PX - TYPE.mark / 2 - y(last.altitude_m),
+    x(last.speed_mps) - LEFT + AXIS_GAP_PX,
+  ];
+  const outer = Math.min(16, below - 2, left - 2);
   for (const radius of [(outer * 9) / 16, outer]) {
     c.beginPath();
     c.arc(x(last.speed_mps), y(last.altitude_m), radius, 0, 7);

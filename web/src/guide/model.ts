@@ -8,6 +8,7 @@ import { phaseSteps } from '../phases/model';
 import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
 import { heardOf } from '../timeline/heard';
 import { liveOutages } from '../timeline/model';
+import { isLost } from '../run/connection';
 import { cutoff, dictionary, modeNow, runNow, timepoints, withRecording } from '../run/shown';
 import type { Dictionary } from '../run/dictionary';
 import type { RunStore } from '../run/store';
@@ -255,7 +256,8 @@ export function guideNow(): GuideStep | undefined {
     toldNow.value,
     lineFocused.value,
   );
-  // An observer is not told to press what would be refused.
-  const allowed = step?.wants === 'command' ? mayAct() : modeNow() !== 'rehearsal' || mayRehearse();
+  // Nobody is told to press what would be refused: no observer, and not while there is no connection.
+  const reaches = !isLost.value || cutoff.value !== Infinity;
+  const allowed = reaches && (step?.wants === 'command' ? mayAct() : modeNow() !== 'rehearsal' || mayRehearse());
   return step && !allowed ? { ...step, press: [], wants: 'nothing' } : step;
 }

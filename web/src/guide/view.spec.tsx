@@ -3,7 +3,9 @@
 import { describe, expect, it } from 'vitest';
 import { aDictionary, aPlan, aRun, aStore, firing, samples, situation, stage } from '../testing/fixtures';
 import type { NamedRun, NamedStage } from '../stream/names';
-import { GUIDE_STEPS, guideShown, guideStep, toggleGuide } from './model';
+import { stream } from '../run/connection';
+import { useForTest } from '../run/session';
+import { GUIDE_STEPS, guideNow, guideShown, guideStep, toggleGuide } from './model';
 
 const done = (count: number) =>
   ['EDL_SET_PARAMETERS', 'EDL_DO_EDL']
@@ -193,6 +195,15 @@ describe('the guide', () => {
     expect(
       guideStep(aStore([], aRun({ venue: 'downlink' })), aDictionary, aPlan, 'live', 'type', Infinity),
     ).toBeUndefined();
+  });
+  it('asks for no press while there is no connection', () => {
+    useForTest(aStore(), aDictionary);
+    const pressed = () => guideNow()?.press.length;
+    expect(pressed()).toBeGreaterThan(0);
+    stream.value = { ...stream.value, state: 'lost' };
+    expect([pressed(), guideNow()?.wants]).toEqual([0, 'nothing']);
+    stream.value = { ...stream.value, state: 'live' };
+    useForTest(undefined, undefined);
   });
   it('once put away stays away', () => {
     expect(guideShown.value).toBe(true);
