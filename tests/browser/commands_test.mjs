@@ -274,9 +274,12 @@ test('commands are held, released, timed and cancelled by keyboard, and what the
 
   // A hazardous command that would be refused is not armed.
   await review(page, 'do edl');
-  await shows('dry-run', /✖ It would be refused: EDL_DO_EDL must not be sent now: parameters_received == 1: is 0/);
+  await shows(
+    'dry-run',
+    /✖ It would be refused: EDL_DO_EDL must not be sent now: parameters received: must be yes, is no/,
+  );
   await page.keyboard.press('Enter');
-  await shows('command-message', /not armed: .*parameters_received/);
+  await shows('command-message', /not armed: .*parameters received: must be yes, is no/);
   assert.equal(await page.getByTestId('command-armed').count(), 0);
   await page.keyboard.press('Escape');
 

@@ -22,8 +22,19 @@ test('words typed without “/” go into the command line, fire no shortcut, an
   await shows('waiting', /Type “set edl parameters”/);
   await waitFor(() => focused(page), /command-line/);
   assert.doesNotMatch(await text('waiting'), /Open the command line/, 'what is done is not asked for');
-  await page.keyboard.type('set edl parameters', { delay: SLOWLY_MS });
-  assert.equal(await line(), 'set edl parameters');
+
+  // What comes too early says why in words, and asks for no key that would be refused.
+  await page.keyboard.type('do edl');
+  await page.keyboard.press('Enter');
+  await shows('dry-run', /✖ It would be refused: [^]*parameters received: must be yes, is no/);
+  for (const part of ['dry-run', 'guide']) assert.doesNotMatch(await text(part), /\bEnter\b/, part);
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('Escape');
+  await page.evaluate(() => document.activeElement.blur());
+
+  // Typed with the quotes that stand around them, without a key before.
+  await page.keyboard.type('"set edl parameters"', { delay: SLOWLY_MS });
+  assert.match(await line(), /^"?set edl parameters"$/);
   await nothingOpened();
   await page.keyboard.press('Enter');
   await shows('waiting', /Read it, then press Enter/);

@@ -52,7 +52,7 @@ async function play(scenario, moments) {
         await page.setViewportSize(size);
         await waitFor(
           () => page.locator('body').innerText(),
-          (all) => !/asking…|has not answered|connecting/.test(all),
+          (all) => !/asking…|ground has not answered|connecting/.test(all),
           60_000,
         );
         // what is predicted of the time ahead, where there is any

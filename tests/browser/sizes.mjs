@@ -178,7 +178,8 @@ function takeItsRow() {
 
 /**
  * Runs in the page: what draws the eye before what matters does, in words: a phase that is larger than the banner's
- * first words, and two scrollbars of one panel beside each other.
+ * first words, and two scrollbars beside each other at the table of channels. (The tools of a range may be higher than
+ * their panel.)
  */
 function outOfOrder() {
   const px = (element) => parseFloat(getComputedStyle(element).fontSize);
@@ -191,7 +192,7 @@ function outOfOrder() {
     found.push(`the phase has ${px(phase)} px, what matters most ${px(first)} px`);
   const scrolls = (element) =>
     /auto|scroll/.test(getComputedStyle(element).overflowY) && element.scrollHeight > element.clientHeight + 1;
-  for (const inner of document.querySelectorAll('.panel .table-scroll')) {
+  for (const inner of document.querySelectorAll('.panel .channels-scroll')) {
     const outer = inner.parentElement.closest('.table-box, .panel-body');
     if (outer && inner.checkVisibility() && scrolls(inner) && scrolls(outer))
       found.push(`${inner.ariaLabel} scrolls within a panel that scrolls`);
@@ -218,7 +219,7 @@ async function pageIn({ open, serve }, t, state) {
   await reach(opened);
   await waitFor(
     () => opened.page.locator('body').innerText(),
-    (all) => !/asking…|has not answered|connecting/.test(all),
+    (all) => !/asking…|ground has not answered|connecting/.test(all),
   );
   await opened.page.evaluate(takeItsRow);
   return opened;
@@ -249,7 +250,7 @@ export async function measuredTabs(workplace, t, sizes) {
     await page.getByTestId(tab).click();
     await waitFor(
       () => page.locator('body').innerText(),
-      (all) => !/asking…|has not answered|Loading …/.test(all),
+      (all) => !/asking…|ground has not answered|Loading …/.test(all),
     );
     found.push(...(await measuredAt(page, tab, sizes)));
   }

@@ -86,7 +86,7 @@ export const LAYOUT = {
     /\s*\([^()]*\b[HML]\b[^()]*\)/g,
     /^OD137\b.*$|[;:]\s*OD137 .*$/,
     /^chosen\b:?\s*|(^|[;,.]?\s+)(time |spacing )?chosen\b/gi,
-    /\s*Held for it: .*$/,
+    /\s*Held for it: .*$|^Design time\b.*$/,
   ],
   /**
    * The comparison that the vehicle makes for a timepoint, shown until flight itself explains what holds it. `bound` is

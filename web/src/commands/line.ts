@@ -6,7 +6,17 @@ import type { CommandReply } from '../gen/aeolis/v1/run_pb';
 import { OutcomeUnknown, sendCommand, whyNotSent } from '../run/connection';
 import { dictionary, pastRange, store, tick } from '../run/shown';
 import type { CommandIntent, QueueAction } from '../stream/messages';
-import { AT_ONCE, argumentOffers, candidates, fieldsOf, intentOf, isHazardous, readLine, unknownNames } from './model';
+import {
+  AT_ONCE,
+  argumentOffers,
+  candidates,
+  fieldsOf,
+  intentOf,
+  isHazardous,
+  readLine,
+  reasonWords,
+  unknownNames,
+} from './model';
 import type { Step, UplinkText } from './model';
 import { rowsNow, withNames } from './names';
 
@@ -225,7 +235,7 @@ export async function forward(): Promise<void> {
     return;
   }
   if (!previewNow.value.accepted) {
-    message.value = { good: false, text: `nothing was sent: ${previewNow.value.reason}` };
+    message.value = { good: false, text: `nothing was sent: ${reasonWords(previewNow.value.reason)}` };
     learnRights();
     return;
   }
@@ -287,7 +297,7 @@ async function arm(): Promise<void> {
     return;
   }
   if (!reply.accepted) {
-    message.value = { good: false, text: `not armed: ${reply.reason}` };
+    message.value = { good: false, text: `not armed: ${reasonWords(reply.reason)}` };
     learnRights();
     return;
   }

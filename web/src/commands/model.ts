@@ -28,9 +28,9 @@ export function readLine(text: string): Typed {
   return { words, given };
 }
 
-/** Commands that match every typed word, best match first: "do edl" finds EDL_DO_EDL. */
+/** Commands that match every typed word, best match first: "do edl" finds EDL_DO_EDL, with its quotes too. */
 export function candidates(dictionary: Dictionary, words: readonly string[]): DictionaryCommand[] {
-  const wanted = words.flatMap((word) => word.toUpperCase().split('_')).filter((word) => word !== '');
+  const wanted = words.flatMap((word) => word.toUpperCase().split(/[_"'“”‘’]/)).filter((word) => word !== '');
   const scored: [number, DictionaryCommand][] = [];
   for (const command of dictionary.commands) {
     const parts = command.name.toUpperCase().split('_');
@@ -248,6 +248,13 @@ export function conditionWords(text: string): { words: string; value: string } {
           value: value.replace(/^is ([01])$/, (_, of: string) => `is ${FACTS[of]}`),
         };
 }
+
+/** A reason with its preconditions in words: "… must not be sent now: parameters received: must be yes, is no". */
+export const reasonWords = (reason: string): string =>
+  reason.replace(/\w+ [=!<>]= [^\s:;]+: [^;]+/g, (each) => {
+    const { words, value } = conditionWords(each);
+    return `${words}, ${value}`;
+  });
 
 /** By their numbers in the schema, like STATUSES, so that the page need not load the schema. */
 export const STAGES = [

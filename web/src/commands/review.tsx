@@ -24,7 +24,7 @@ import {
   typed,
   uplink,
 } from './line';
-import { arrivalOf, conditionWords, isHazardous, rangeText, textOf, unitText } from './model';
+import { arrivalOf, conditionWords, isHazardous, rangeText, reasonWords, textOf, unitText } from './model';
 import type { UplinkText } from './model';
 import { argumentsInWords, rowName, rowsNow } from './names';
 
@@ -305,7 +305,7 @@ function Verdict({ command }: { command: DictionaryCommand }) {
               : 'It would be sent as it stands here.'}
         </p>
       ) : (
-        <p class="verdict missing">✖ It would be refused: {reply.reason}</p>
+        <p class="verdict missing">✖ It would be refused: {reasonWords(reply.reason)}</p>
       )}
       {tooLateFor.length > 0 && (
         <p class="verdict caution" data-testid="too-late">
@@ -338,15 +338,20 @@ function DryRun({ command, onKey }: Properties) {
       )}
       {step.value === 'review' && (
         <p class="next">
-          <kbd>Enter</kbd>{' '}
-          {isHazardous(command)
-            ? 'arms it; nothing is sent yet'
-            : uplink.value.hold
-              ? 'puts it into the queue, held'
-              : reply?.needsApproval
-                ? 'asks a second controller for it'
-                : 'sends it'}{' '}
-          · <kbd>Tab</kbd> to change · <kbd>Esc</kbd> goes back
+          {reply?.accepted !== false && (
+            <>
+              <kbd>Enter</kbd>{' '}
+              {isHazardous(command)
+                ? 'arms it; nothing is sent yet'
+                : uplink.value.hold
+                  ? 'puts it into the queue, held'
+                  : reply?.needsApproval
+                    ? 'asks a second controller for it'
+                    : 'sends it'}{' '}
+              ·{' '}
+            </>
+          )}
+          <kbd>Tab</kbd> to change · <kbd>Esc</kbd> goes back
         </p>
       )}
       {step.value !== 'armed' && <Effect onKey={onKey} />}

@@ -33,6 +33,7 @@ import {
   arrivalOf,
   candidates,
   conditionWords,
+  reasonWords,
   fieldsOf,
   intentOf,
   isHazardous,
@@ -59,6 +60,7 @@ describe('what is typed', () => {
     expect(candidates(aDictionary, ['do', 'edl'])[0]?.name).toBe('EDL_DO_EDL');
     expect(candidates(aDictionary, ['set', 'edl', 'parameters'])[0]?.name).toBe('EDL_SET_PARAMETERS');
     expect(candidates(aDictionary, ['edl_set_par'])[0]?.name).toBe('EDL_SET_PARAMETERS');
+    expect(candidates(aDictionary, ['“do', 'edl"'])[0]?.name, 'with its quotes').toBe('EDL_DO_EDL');
     expect(candidates(aDictionary, ['launch'])).toEqual([]);
   });
   it('reads arguments beside the words', () => {
@@ -184,6 +186,14 @@ describe('what is asked of the uplink', () => {
     expect(conditionWords('parameters_received == 1: not known, no value has come').value).toBe(
       'not known, no value has come',
     );
+    expect(
+      reasonWords(
+        'X must not be sent now: parameters_received == 1: is 0; late_cruise == 1: not known, no value has come',
+      ),
+    ).toBe(
+      'X must not be sent now: parameters received: must be yes, is no; late cruise: must be yes, not known, no value has come',
+    );
+    expect(reasonWords('the line is closed: nobody has said go')).toBe('the line is closed: nobody has said go');
     expect(conditionWords('edl_enabled == 0: is 0')).toEqual({ words: 'edl enabled: no, as it must be', value: '' });
     expect(conditionWords('speed_mps <= 405: is 1')).toEqual({ words: 'speed mps ≤ 405', value: 'is 1' });
   });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The guide through a first landing, from opening the page to touchdown: what to press, why, and what is happening.
 import { signal } from '@preact/signals';
-import { lineFocused, step as commandStep } from '../commands/line';
+import { lineFocused, previewNow, step as commandStep } from '../commands/line';
 import type { Step } from '../commands/model';
 import { LAYOUT } from '../layout';
 import { phaseSteps } from '../phases/model';
@@ -259,5 +259,7 @@ export function guideNow(): GuideStep | undefined {
   // Nobody is told to press what would be refused: no observer, and not while there is no connection.
   const reaches = !isLost.value || cutoff.value !== Infinity;
   const allowed = reaches && (step?.wants === 'command' ? mayAct() : modeNow() !== 'rehearsal' || mayRehearse());
-  return step && !allowed ? { ...step, press: [], wants: 'nothing' } : step;
+  if (step && !allowed) return { ...step, press: [], wants: 'nothing' };
+  const isRefused = commandStep.value === 'review' && previewNow.value?.accepted === false;
+  return step && isRefused ? { ...step, press: step.press.filter(({ key }) => key !== 'Enter') } : step;
 }

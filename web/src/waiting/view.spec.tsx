@@ -66,6 +66,7 @@ describe('waiting for', () => {
     ).toEqual(['', 'Armed already.', 'Its last use.', '']);
     expect(noteWords('By the clock (see the plan); 75 kg (M)')).toBe('By the clock (see the plan); 75 kg.');
     expect(noteWords('Its last use; time chosen (L). Held for it: nothing is due for 27 s')).toBe('Its last use.');
+    expect(noteWords('Design time (M)'), 'of no use to a controller').toBe('');
   });
   it('asks for no command that the vehicle’s status still speaks against', () => {
     const waiting = (against?: Against) =>
