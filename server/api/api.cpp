@@ -185,6 +185,7 @@ std::span<const Api::Route> Api::routes() {
         {"DELETE", "/api/v1/runs/{run}", Right::rehearse, &Api::remove_run, Query::none, "prune", Audited::refusals},
         {"GET", "/api/v1/runs/{run}/samples", Right::watch, &Api::export_samples, Query::own},
         {"GET", "/api/v1/runs/{run}/raw", Right::watch, &Api::export_raw, Query::own},
+        {"GET", "/api/v1/runs/{run}/rows", Right::instruct, &Api::export_rows, Query::own, "rows", Audited::refusals},
         {"GET", "/api/v1/runs/{run}/prediction", Right::watch, &Api::prediction, Query::own},
         {"GET", "/api/v1/runs/{run}/forecasts", Right::watch, &Api::list_forecasts, Query::own},
         {"POST", "/api/v1/runs/{run}/forecasts", Right::command, &Api::post_forecast, Query::none, "forecast",

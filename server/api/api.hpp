@@ -18,6 +18,7 @@
 #include "server/scenario/scenario_library.hpp"
 #include "server/shadow/forecast_service.hpp"
 
+#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -81,6 +82,7 @@ class Api {
         /// Gives a request that is for the origin to it; null: it is refused with `follows`.
         std::function<void(const ApiRequest&)> to_origin{};
         ProcedureLibrary procedures{};
+        std::filesystem::path archive{};  ///< its file, for what goes to other servers as it is
     };
     explicit Api(Parts parts);
 
@@ -131,6 +133,7 @@ class Api {
     // sample_export.cpp
     void export_samples(const ApiRequest& call);
     void export_raw(const ApiRequest& call);
+    void export_rows(const ApiRequest& call);
     // prediction_routes.cpp
     void prediction(const ApiRequest& call);
     // schema_routes.cpp
@@ -230,6 +233,7 @@ class Api {
     procedures::CallList calls_;  ///< as they were when the server began
     std::string dictionary_json_;
     CommandRates command_rates_;
+    const std::shared_ptr<std::atomic<int>> rows_under_way_ = std::make_shared<std::atomic<int>>(0);
     std::mutex counts_mutex_;
     /// By route and status. Refused log-ins count from 0, or an alert's increase() would not see the first ones.
     std::map<std::pair<std::string, unsigned>, std::uint64_t> responses_{{{"POST /api/v1/session", 401}, 0},

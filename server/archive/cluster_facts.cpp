@@ -4,6 +4,7 @@
 namespace aeolis::archive {
 namespace {
 
+constexpr char fact_identity[] = "archive";
 constexpr char cluster_tables_sql[] =
     "CREATE TABLE IF NOT EXISTS cluster (name TEXT PRIMARY KEY, value TEXT NOT NULL) STRICT, WITHOUT ROWID;"
     "CREATE TABLE IF NOT EXISTS published_runs (run INTEGER PRIMARY KEY, position BLOB NOT NULL, state TEXT NOT NULL)"
@@ -37,15 +38,20 @@ Result<void> keep_cluster_fact(sqlite::Database& database, const std::string& na
 }
 
 Result<std::string> cluster_identity(sqlite::Database& database) {
-    constexpr char name[] = "archive";
-    auto known = cluster_fact(database, name);
+    auto known = cluster_fact(database, fact_identity);
     if (!known || !known->empty()) return known;
     if (auto made = database.execute(cluster_tables_sql); !made) return made.error();
     if (auto drawn = database.execute("INSERT INTO cluster VALUES ('archive', lower(hex(randomblob(16))))"
                                       " ON CONFLICT DO NOTHING");
         !drawn)
         return drawn.error();
-    return cluster_fact(database, name);
+    return cluster_fact(database, fact_identity);
+}
+
+Result<std::string> origin_of_runs(sqlite::Database& database) {
+    auto followed = cluster_fact(database, fact_origin);
+    if (!followed || !followed->empty()) return followed;
+    return cluster_fact(database, fact_identity);
 }
 
 Result<std::map<std::uint32_t, PublishedRun>> published_runs(sqlite::Database& database) {

@@ -16,6 +16,9 @@ namespace aeolis::archive {
 
 /// The archive's own identity: 128 random bits in hexadecimal digits, drawn at the first call.
 Result<std::string> cluster_identity(sqlite::Database& database);
+/// The identity by which the archive's runs travel: that of the archive that it follows, else its own. Empty: none was
+/// drawn yet.
+Result<std::string> origin_of_runs(sqlite::Database& database);
 
 /// Facts by name; empty: not known.
 inline constexpr char fact_origin[] = "origin";        ///< identity of the archive that this one follows

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/archive/run_rows.hpp"
 
+#include "server/archive/cluster_facts.hpp"
 #include "server/archive/item_keys.hpp"
 #include "server/archive/item_rows.hpp"
 #include "server/archive/row_codec.hpp"
@@ -286,6 +287,10 @@ Result<RunRowsReader> RunRowsReader::open(const std::filesystem::path& file) {
 
 const std::string& RunRowsReader::tables() const {
     return state_->tables;
+}
+
+Result<std::string> RunRowsReader::origin() {
+    return origin_of_runs(state_->database);
 }
 
 Result<bool> RunRowsReader::changed() {

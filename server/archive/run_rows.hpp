@@ -70,6 +70,7 @@ class RunRowsReader {
     Result<std::vector<RunHead>> runs();
     Result<std::optional<RunHead>> run(RunId run);
     const std::string& tables() const;
+    Result<std::string> origin();  ///< origin_of_runs()
 
     /// What was committed behind `before`, as far as a step goes. None: nothing, or only counters and `counters` is
     /// false.

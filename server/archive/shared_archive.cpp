@@ -63,6 +63,17 @@ Result<std::string> SharedArchive::tables() {
 Result<v1::RunPosition> SharedArchive::position(RunId run) {
     return position_of(*database_, run);
 }
+Result<bool> SharedArchive::is_settled(RunId run, Sequence last) {
+    const auto of_run = " WHERE run = " + std::to_string(run.value);
+    const auto pruned = database_->integer_of(("SELECT count(*) FROM pruned_runs" + of_run).c_str());
+    if (!pruned) return pruned.error();
+    if (*pruned != 0) return true;
+    const auto over = database_->integer_of(("SELECT count(*) FROM runs" + of_run + " AND state <> 'running'").c_str());
+    if (!over) return over.error();
+    const auto here = position(run);
+    if (!here) return here.error();
+    return *over != 0 && here->seq() >= last;
+}
 Result<std::map<std::uint32_t, PublishedRun>> SharedArchive::published() {
     return published_runs(*database_);
 }

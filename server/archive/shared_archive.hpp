@@ -46,6 +46,9 @@ class SharedArchive {
 
     /// How much of a run is here.
     Result<v1::RunPosition> position(RunId run);
+    /// Whether nothing is to be fetched of a run that has items up to `last` elsewhere: it is over and has them here, or
+    /// it was pruned here.
+    Result<bool> is_settled(RunId run, Sequence last);
     struct Items {
         Sequence first = 0, last = 0;  ///< both 0: none
     };

@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <fstream>
 #include <memory>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
@@ -42,12 +43,14 @@ struct ServeOptions {
     std::optional<std::string> downlink;  ///< "tcp://HOST:PORT", "udp://HOST:PORT": follow another mission
     MissionXtce xtce;                     ///< of the followed mission
     PacketStreamFormat format{};
-    cluster::EngineAddress nats;         ///< how a NATS engine is reached, for the two below; its URL stays empty
-    std::string publish_to;              ///< URL; empty: nowhere
-    std::string follow;                  ///< URL; empty: no other server is followed
-    std::string follow_archive;          ///< of which archive, where the engine has several
-    std::string follow_runs;             ///< numbers and ranges; empty: all runs
-    std::filesystem::path follower_key;  ///< signs what people here ask of the origin
+    cluster::EngineAddress nats;  ///< how a NATS engine is reached, for the two below; its URL stays empty
+    std::string publish_to;       ///< URL; empty: nowhere
+    std::string follow;           ///< URL; empty: no other server is followed
+    std::string follow_archive;   ///< of which archive, where the engine has several
+    std::string follow_runs;      ///< numbers and ranges; empty: all runs
+    HttpClient::Settings snapshots{.server_option = "--snapshot-from", .authorities_option = "--snapshot-ca"};
+    std::filesystem::path snapshot_token;  ///< the file of its token; empty: the environment may have one
+    std::filesystem::path follower_key;    ///< signs what people here ask of the origin
     std::uint64_t plan_flights = 300;
     std::uint64_t keep_raw_mb = archive::raw_octets_kept >> 20U;  ///< of each link of a run
     std::string log_level{default_log_level}, log_format = "text";
@@ -200,6 +203,21 @@ void run_until_signal(ConsoleBackend& backend, const Signals& signals, const Ser
     waiter.join();
 }
 
+/// The server from which runs are fetched, with its token.
+Result<HttpClient::Settings> snapshots_of(const ServeOptions& options) {
+    auto snapshots = options.snapshots;
+    if (!options.snapshot_token.empty()) {
+        std::ifstream file{options.snapshot_token};
+        if (!(file >> snapshots.token))
+            return Error{
+                fmt::format("--snapshot-token-file {}: no token can be read in it", options.snapshot_token.string())};
+    } else if (const char* token = std::getenv("AEOLIS_SNAPSHOT_TOKEN"); token != nullptr) {
+        snapshots.token = token;
+    }
+    if (snapshots.server.empty()) snapshots.token.clear();
+    return snapshots;
+}
+
 cluster::EngineAddress engine_at(cluster::EngineAddress credentials, const std::string& url) {
     credentials.url = url;
     return credentials;
@@ -211,6 +229,8 @@ int serve(const ServeOptions& options) {
     const auto runs = options.follow_runs.empty() ? Result<cluster::ChosenRuns>{cluster::ChosenRuns{}}
                                                   : cluster::ChosenRuns::parse(options.follow_runs);
     if (!runs) return failed("--follow-runs " + runs.error().message, 2);
+    const auto snapshots = snapshots_of(options);
+    if (!snapshots) return failed(snapshots.error().message, 2);
     const auto listen = listen_of(options.listen);
     if (!listen)
         return failed(fmt::format("--listen {}: expected ADDRESS:PORT, such as 127.0.0.1:8080", options.listen), 2);
@@ -246,6 +266,7 @@ int serve(const ServeOptions& options) {
                                         .follow_by = engine_at(options.nats, options.follow),
                                         .follow_archive = options.follow_archive,
                                         .follow_runs = *runs,
+                                        .snapshots = *snapshots,
                                         .follower_key = options.follower_key},
                                        *dictionary);
     if (!opened) return failed(opened.error().message);
@@ -328,6 +349,17 @@ void add_cluster_options(CLI::App& command, ServeOptions& options) {
         .add_option("--follow-runs", options.follow_runs,
                     "the runs to follow, such as 3,5-8,12- (12 and all later ones); all if left out")
         ->needs(follow);
+    auto* from = command
+                     .add_option("--snapshot-from", options.snapshots.server,
+                                 "http://HOST:PORT or https://HOST:PORT of the origin or another follower: gives what "
+                                 "the engine no longer has; AEOLIS_SNAPSHOT_TOKEN has its token, of an instructor")
+                     ->needs(follow);
+    command.add_option("--snapshot-token-file", options.snapshot_token, "file with that token")->needs(from);
+    command
+        .add_option("--snapshot-ca", options.snapshots.authorities,
+                    "PEM file of the authorities that may have signed that server's certificate; the system's if left "
+                    "out")
+        ->needs(from);
     command
         .add_option("--follower-key", options.follower_key,
                     "key of this follower (aeolis accounts follower-key): people with accounts here may command, where "

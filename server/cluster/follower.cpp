@@ -22,7 +22,9 @@ using archive::RunId;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t messages_at_once = 16;
-constexpr double far_behind_s = 2.0;  // chosen: a person would say so from here on
+constexpr double far_behind_s = 2.0;                   // chosen: a person would say so from here on
+constexpr std::chrono::milliseconds fetched_wait{20};  // for the engine's steps, while others are fetched
+constexpr std::chrono::milliseconds fetched_turn{50};  // chosen: fetched steps are taken so long at a time
 
 double seconds(Clock::duration time) {
     return std::chrono::duration<double>{time}.count();
@@ -46,11 +48,10 @@ struct Place {
     std::string text() const { return fmt::format("{} {}", stream, last); }
 };
 
-/// The pieces of a step, as far as they have come.
-struct Pieces {
-    v1::RunRows first;
-    std::string octets;
-    std::uint32_t next = 0;
+/// Steps of a run that the engine gave and that do not follow what is here.
+struct PassedOver {
+    v1::RunPosition before;  ///< of the first of them
+    v1::RunPosition after;   ///< of all
 };
 
 std::string text_of(const Following& following) {
@@ -63,6 +64,8 @@ std::string text_of(const Following& following) {
         text += following.behind_s < far_behind_s
                     ? fmt::format("; {} items behind", following.behind_items)
                     : fmt::format("; {} items behind, for {:.0f} s", following.behind_items, following.behind_s);
+    if (!following.fetching.empty()) text += "; " + following.fetching;
+    if (!following.fetch_fault.empty()) text += "; " + following.fetch_fault;
     for (const auto& run : following.left_out) text += "; " + run;
     return text;
 }
@@ -129,6 +132,7 @@ class Follower::Thread {
         : settings_(std::move(settings)), parts_(std::move(parts)), own_(std::move(own)),
           place_(Place::of(own_.place)) {
         status_.origin = own_.origin;
+        if (settings_.snapshots.get) fetcher_ = std::make_unique<SnapshotFetcher>(settings_.snapshots);
         thread_ = std::thread{[this] { run(); }};
     }
     ~Thread() {
@@ -149,10 +153,10 @@ class Follower::Thread {
     void run() {
         while (!stopped()) {
             const auto done = work();
-            told(done);
-            if (done) continue;
-            steps_.reset();
-            wait(settings_.again_after);
+            const auto fetched = take_fetched();
+            told(done ? fetched : done);
+            if (!done) steps_.reset();
+            if (!done || !fetched) wait(settings_.again_after);
         }
         steps_.reset();
         if (engine_ && engine_->connected()) (void)engine_->remove_consumer(run_stream, reader_name());
@@ -167,8 +171,9 @@ class Follower::Thread {
         if (!engine_->connected()) return Error{shown(settings_.engine) + ": the engine is away"};
         if (!steps_)
             if (auto begun = begin(); !begun) return begun;
-        auto given = steps_->next(messages_at_once, settings_.wait);
+        auto given = steps_->next(messages_at_once, fetching_.empty() ? settings_.wait : fetched_wait);
         if (!given) return given.error();
+        if (fetching_.empty() || !given->empty()) idle_ = given->empty();
         for (const auto& one : *given) {
             if (stopped()) return {};
             if (one.count() != count_ + 1) return Error{"messages of the engine were lost: they are read again"};
@@ -186,83 +191,70 @@ class Follower::Thread {
         if (facts->made.empty()) return Error{fmt::format("no stream {} yet: the origin makes it", run_stream)};
         if (facts->made != place_.stream || facts->last < place_.last) place_ = {facts->made, 0};
         if (std::exchange(read_again_, false)) place_.last = 0;
-        if (place_.last == 0) pieces_.clear();  // else the next piece of a step is still to come
+        if (place_.last == 0) {
+            pieces_.forget();  // else the next piece of a step is still to come
+            passed_over_.clear();
+        }
         auto steps = engine_->read(run_stream, reader_name(), subject_of_runs(own_.origin), place_.last + 1);
         if (!steps) return steps.error();
         steps_.emplace(std::move(*steps));
         count_ = 0;
+        list_due_ = fetcher_ != nullptr;
         return {};
     }
 
     std::string reader_name() const { return "follower-" + own_.identity; }
 
+    /// Why a message is not of what is followed here; empty: it is.
+    std::string refusal_of(const v1::RunRows& message) const {
+        if (message.archive() != own_.origin)
+            return fmt::format("a message of the archive {}", brief(message.archive()));
+        if (message.tables() != own_.tables)
+            return "the origin's tables are not those of this program: the same version is needed on both sides";
+        return {};
+    }
+    std::string refusal_of_dictionary(const v1::RunRows& message) const {
+        if (message.dictionary() == settings_.dictionary) return {};
+        return fmt::format("it has the dictionary {}, this server {}", message.dictionary(), settings_.dictionary);
+    }
+
     /// The Error: the message is to be given again.
     Result<void> take(const Given& given) {
-        v1::RunRows message;
-        const auto octets = given.octets();
-        if (!message.ParseFromArray(octets.data(), static_cast<int>(octets.size())) || message.run() == 0 ||
-            message.pieces() == 0 || message.piece() >= message.pieces())
-            return refuse("a message that is none of an origin");
-        if (message.archive() != own_.origin)
-            return refuse(fmt::format("a message of the archive {}", brief(message.archive())));
-        const RunId run{message.run()};
-        if (!settings_.runs.has(run)) return {};
-        if (message.tables() != own_.tables)
-            return refuse(
-                "the origin's tables are not those of this program: the same version is needed on both sides");
-        if (message.dictionary() != settings_.dictionary)
-            return refuse(run, fmt::format("it has the dictionary {}, this server {}", message.dictionary(),
-                                           settings_.dictionary));
+        auto message = run_rows_of(given.octets());
+        if (!message) return refuse(message.error().message);
+        const RunId run{message->run()};
+        if (message->archive() == own_.origin && !settings_.runs.has(run)) return {};
+        if (const auto why = refusal_of(*message); !why.empty()) return refuse(why);
+        if (const auto why = refusal_of_dictionary(*message); !why.empty()) return refuse(run, why);
         const auto here = position(run);
         if (!here) return here.error();
-        if (archive::within(message.after(), **here) && !archive::within(**here, message.after())) {
+        if (archive::within(message->after(), **here) && !archive::within(**here, message->after())) {
             ++repeated_;  // older than what is here
             return {};
         }
-        auto whole = join(std::move(message));
-        if (!whole) return refuse(whole.error().message);
-        if (!*whole) return {};  // more pieces are to come
-        return take_step(run, (*whole)->first, (*whole)->octets, **here, {place_.stream, given.place()});
+        auto step = pieces_.join(std::move(*message));
+        if (!step) return refuse(step.error().message);
+        if (!*step) return {};  // more pieces are to come
+        if (!archive::within((*step)->head.before(), **here)) return gap(run, (*step)->head, **here);
+        // What was passed over is to be read again, also if this process ends before that.
+        const Place place{place_.stream, passed_over_.empty() ? given.place() : 0};
+        const auto stored = store(run, **step, **here, place);
+        return stored ? Result<void>{} : refuse(run, stored.error().message);
     }
 
-    /// A step of which all pieces are there; none: some are still to come.
-    Result<std::optional<Pieces>> join(v1::RunRows message) {
-        auto& pieces = pieces_[message.run()];
-        const bool fits =
-            message.piece() == 0 || (message.piece() == pieces.next && message.pieces() == pieces.first.pieces() &&
-                                     archive::equal(message.after(), pieces.first.after()));
-        if (!fits) {
-            pieces = {};
-            return Error{fmt::format("run {}: a piece of a step without the one before", message.run())};
-        }
-        if (message.piece() == 0) pieces = {};
-        pieces.octets += message.octets();
-        pieces.next = message.piece() + 1;
-        const bool last = pieces.next == message.pieces();
-        if (pieces.octets.size() > archive::row_set_octets_max) {
-            pieces = {};
-            return Error{
-                fmt::format("run {}: a step of more than {} MB", message.run(), archive::row_set_octets_max >> 20U)};
-        }
-        message.clear_octets();
-        if (message.piece() == 0) pieces.first = std::move(message);
-        if (!last) return std::optional<Pieces>{};
-        return std::optional{std::exchange(pieces, {})};
-    }
-
-    Result<void> take_step(RunId run, const v1::RunRows& message, const std::string& octets,
-                           const v1::RunPosition& here, const Place& place) {
-        if (!archive::within(message.before(), here)) return gap(run, message.before(), here);
-        auto rows = archive::unpacked(octets);
-        if (!rows) return refuse(run, rows.error().message);
-        const archive::RunStep step{settings_.dictionary, message.before(), message.after(), std::move(*rows)};
+    /// Stores a step, however long the disk refuses it. The Error: the step's own.
+    Result<void> store(RunId run, const TravelledStep& travelled, const v1::RunPosition& here, const Place& place) {
+        auto rows = archive::unpacked(travelled.octets);
+        if (!rows) return rows.error();
+        const archive::RunStep step{settings_.dictionary, travelled.head.before(), travelled.head.after(),
+                                    std::move(*rows)};
         for (;;) {
             const auto taken = own_.shared.take(run, step, place.text());
             if (taken) {
                 if (taken->last > 0) parts_.taken(run, taken->first, taken->last);
                 break;
             }
-            if (!taken.error().internal) return refuse(run, taken.error().message);
+            if (!taken.error().internal) return taken.error();
             told(taken.error());  // the disk's fault: the step waits here
             wait(settings_.again_after);
             if (stopped()) return {};
@@ -275,18 +267,215 @@ class Follower::Thread {
     }
 
     /// Steps are missing: the stream may have them, before the place from which it was read.
-    Result<void> gap(RunId run, const v1::RunPosition& before, const v1::RunPosition& here) {
+    Result<void> gap(RunId run, const v1::RunRows& step, const v1::RunPosition& here) {
+        if (wanted_.contains(run.value)) {
+            pass_over(run, step);
+            return {};
+        }
         const auto sought = sought_.find(run.value);
         if (place_.last > 0 && (sought == sought_.end() || here.seq() > sought->second)) {
             sought_[run.value] = here.seq();
             read_again_ = true;
             return Error{fmt::format("run {}: what comes before item {} is missing: the stream is read again from its "
                                      "beginning",
-                                     run.value, before.seq() + 1)};
+                                     run.value, step.before().seq() + 1)};
+        }
+        if (fetcher_) {
+            pass_over(run, step);
+            wanted_.insert(run.value);
+            return {};
         }
         return refuse(run, fmt::format("a step begins behind item {}, this archive ends at {}: if the engine no longer "
-                                       "has what is between, begin with a copy of the origin's (aeolis archive backup)",
-                                       before.seq(), here.seq()));
+                                       "has what is between, have it fetched from the origin (--snapshot-from), or "
+                                       "begin with a copy of the origin's archive (aeolis archive backup)",
+                                       step.before().seq(), here.seq()));
+    }
+
+    void pass_over(RunId run, const v1::RunRows& step) {
+        const auto [known, first] = passed_over_.try_emplace(run.value, PassedOver{step.before(), step.after()});
+        if (!first) known->second.after = archive::merged(known->second.after, step.after());
+    }
+
+    /// Takes what another server gave, and asks it for more. The Error: of this archive or the engine.
+    Result<void> take_fetched() {
+        if (!fetcher_) return {};
+        for (const auto until = Clock::now() + fetched_turn; !fetching_.empty() && Clock::now() < until;) {
+            auto news = fetcher_->next();
+            if (!news) break;
+            if (auto* message = std::get_if<v1::RunRows>(&*news)) {
+                if (auto taken = take_fetched(std::move(*message)); !taken) return taken;
+            } else if (const auto* runs = std::get_if<SnapshotFetcher::Listed>(&*news)) {
+                fetching_.clear();
+                if (auto taken = want_of(*runs); !taken) return taken;
+            } else if (auto ended = fetch_ended(std::get<SnapshotFetcher::Ended>(*news)); !ended) {
+                return ended;
+            }
+        }
+        return fetching_.empty() ? fetch_next() : Result<void>{};
+    }
+
+    Result<void> fetch_next() {
+        const auto now = Clock::now();
+        if (list_due_ && now >= list_after_) {
+            fetching_ = fmt::format("{} is asked for its runs", fetcher_->source());
+            fetched_run_ = 0;
+            fetch_refusal_.clear();
+            fetcher_->list();
+        } else if (!wanted_.empty() && now >= fetch_after_) {
+            auto next = wanted_.upper_bound(newest_fetched_);  // in turn, so that none holds up the others
+            if (next == wanted_.end()) next = wanted_.begin();
+            const RunId run{*next};
+            const auto here = position(run);
+            if (!here) return here.error();
+            fetching_ = fmt::format("run {} is fetched from {}", run.value, fetcher_->source());
+            if (!fetch_faults_.contains(run.value))
+                spdlog::info("{}, behind item {}: the engine no longer has it", fetching_, (*here)->seq());
+            fetched_run_ = newest_fetched_ = run.value;
+            fetched_pieces_.forget();
+            fetch_refusal_.clear();
+            fetched_any_ = false;
+            fetcher_->fetch(run, **here);
+        }
+        return {};
+    }
+
+    Result<void> take_fetched(v1::RunRows message) {
+        if (!fetch_refusal_.empty()) return {};
+        std::string why;
+        if (message.archive() != own_.origin)
+            why = fmt::format("it has runs of the archive {}, this server follows {}", brief(message.archive()),
+                              brief(own_.origin));
+        if (why.empty()) why = refusal_of(message);
+        if (why.empty() && message.run() != fetched_run_) why = fmt::format("it gives run {}", message.run());
+        if (why.empty()) why = refusal_of_dictionary(message);
+        if (why.empty()) {
+            const RunId run{message.run()};
+            const auto here = position(run);
+            if (!here) return here.error();
+            auto step = fetched_pieces_.join(std::move(message));
+            if (!step) {
+                why = step.error().message;
+            } else if (*step && !archive::within((*step)->head.before(), **here)) {
+                why = fmt::format("a step begins behind item {}, this archive ends at {}", (*step)->head.before().seq(),
+                                  (*here)->seq());
+            } else if (*step) {
+                const Place place{place_.stream, passed_over_.empty() ? place_.last : 0};
+                if (const auto stored = store(run, **step, **here, place); !stored) why = stored.error().message;
+                ++fetched_;
+                fetched_any_ = true;
+            }
+        }
+        if (why.empty()) return {};
+        ++refused_;
+        fetch_refusal_ = std::move(why);
+        fetcher_->break_off();
+        return {};
+    }
+
+    /// Finds runs of another server of which this archive has not all: they are wanted where the engine has nothing of
+    /// them. Where it has something that was read earlier, the stream is read again, which finds what is missing. What
+    /// lacks now may come in a moment: such runs are looked at twice.
+    Result<void> want_of(const SnapshotFetcher::Listed& runs) {
+        list_due_ = true;  // until all is known
+        list_after_ = Clock::now() + settings_.fetch_again_after;
+        if (!engine_ || !engine_->connected()) return {};  // which is told elsewhere
+        const auto subjects = engine_->subjects(run_stream, subject_of_runs(own_.origin));
+        if (!subjects) return subjects.error();
+        const std::set<std::string> there{subjects->begin(), subjects->end()};
+        std::set<std::uint32_t> absent;
+        std::map<std::uint32_t, archive::Sequence> behind;
+        bool again = false;
+        for (const auto& listed : runs) {
+            const auto number = listed.run.value;
+            if (!settings_.runs.has(listed.run) || wanted_.contains(number)) continue;
+            const auto settled = own_.shared.is_settled(listed.run, listed.last);
+            if (!settled) return settled.error();
+            if (*settled) continue;
+            const auto here = position(listed.run);
+            if (!here) return here.error();
+            if (!there.contains(subject_of_run(own_.origin, listed.run))) {
+                absent.insert(number);
+                if (absent_.contains(number))
+                    wanted_.insert(number);
+                else
+                    again = true;
+                continue;
+            }
+            if (listed.last <= (*here)->seq() || sought_.contains(number)) continue;
+            const auto before = behind_.find(number);
+            if (idle_ && before != behind_.end() && before->second == (*here)->seq()) {
+                sought_[number] = (*here)->seq();
+                read_again_ = true;
+                steps_.reset();
+            } else {
+                behind[number] = (*here)->seq();
+                again = true;
+            }
+        }
+        absent_ = std::move(absent);
+        behind_ = std::move(behind);
+        list_due_ = again;
+        fetch_faults_.erase(0);
+        return {};
+    }
+
+    /// The end of what was asked of the other server.
+    Result<void> fetch_ended(const SnapshotFetcher::Ended& ended) {
+        fetching_.clear();
+        const auto number = fetched_run_;
+        auto fault = fetch_refusal_.empty() ? ended.fault : fetch_refusal_;
+        if (number == 0) {
+            list_after_ = Clock::now() + settings_.fetch_again_after;
+            tell_fetch_fault(0, fmt::format("{}: {}", fetcher_->source(), fault));
+            return {};
+        }
+        const RunId run{number};
+        const auto here = position(run);
+        if (!here) return here.error();
+        const auto over = passed_over_.find(number);
+        const bool joined = over == passed_over_.end() || archive::within(over->second.before, **here);
+        if (fault.empty() && !joined)
+            fault = fmt::format("it has items up to {}, the engine those behind {}", (*here)->seq(),
+                                over->second.before.seq());
+        if (!fault.empty()) {
+            // Cut off: it goes on from where it was. Else there is nothing new to be had soon.
+            fetch_after_ = Clock::now() + (fetched_any_ && fetch_refusal_.empty() ? settings_.again_after
+                                                                                  : settings_.fetch_again_after);
+            fault = fmt::format("run {} from {}: {}", number, fetcher_->source(), fault);
+            if (!ended.gone) {
+                tell_fetch_fault(number, fault);
+                return {};
+            }
+            wanted_.erase(number);
+            fetch_faults_.erase(number);
+            const bool begun = over != passed_over_.end();
+            if (begun) passed_over_.erase(over);
+            return begun ? refuse(run, fault) : Result<void>{};
+        }
+        spdlog::info("run {} is fetched, up to item {}", number, (*here)->seq());
+        fetch_faults_.erase(number);
+        wanted_.erase(number);
+        absent_.erase(number);
+        if (over == passed_over_.end()) return {};
+        if (archive::within(over->second.after, **here)) {
+            passed_over_.erase(over);
+        } else {  // the stream has what comes next, and it was read already
+            read_again_ = true;
+            steps_.reset();
+        }
+        return {};
+    }
+
+    void tell_fetch_fault(std::uint32_t run, const std::string& fault) {
+        auto& known = fetch_faults_[run];
+        if (fault != known) spdlog::warn("{}", fault);
+        known = fault;
+    }
+    std::string text_of_fetch_faults() const {
+        if (fetch_faults_.empty()) return {};
+        const auto& first = fetch_faults_.begin()->second;
+        return fetch_faults_.size() == 1 ? first
+                                         : fmt::format("{} (and {} more runs)", first, fetch_faults_.size() - 1);
     }
 
     Result<const v1::RunPosition*> position(RunId run) {
@@ -390,6 +579,9 @@ class Follower::Thread {
             status_.items = items_;
             status_.repeated = repeated_;
             status_.refused = refused_;
+            status_.fetching = fetching_;
+            status_.fetch_fault = text_of_fetch_faults();
+            status_.fetched_steps = fetched_;
             status_.left_out.clear();
             for (const auto& [run, why] : left_out_) status_.left_out.push_back(why);
             now = as_of_now();
@@ -423,10 +615,23 @@ class Follower::Thread {
     Place place_;
     bool read_again_ = false;
     std::map<std::uint32_t, v1::RunPosition> positions_;
-    std::map<std::uint32_t, Pieces> pieces_;
+    StepJoiner pieces_;
     std::map<std::uint32_t, std::string> left_out_;  // until a step of the run is taken
     std::map<std::uint32_t, std::uint64_t>
         sought_;  // runs for which the stream was read again, and their last item then
+    // What the engine no longer has, from another server.
+    std::unique_ptr<SnapshotFetcher> fetcher_;           // none: there is no such server
+    std::set<std::uint32_t> wanted_;                     // to be fetched
+    std::set<std::uint32_t> absent_;                     // not in the engine when that was looked at
+    std::map<std::uint32_t, archive::Sequence> behind_;  // last items then of others that were not here to their end
+    std::map<std::uint32_t, PassedOver> passed_over_;    // of those that are wanted
+    std::map<std::uint32_t, std::string> fetch_faults_;  // by run; 0: of the list
+    std::string fetching_, fetch_refusal_;
+    std::uint32_t fetched_run_ = 0, newest_fetched_ = 0;  // 0: the list
+    StepJoiner fetched_pieces_;
+    bool idle_ = false, list_due_ = false, fetched_any_ = false;  // idle_: the engine had no more
+    std::uint64_t fetched_ = 0;
+    Clock::time_point fetch_after_{}, list_after_{};
     std::set<std::string> told_;
     std::uint64_t taken_ = 0, items_ = 0, repeated_ = 0, refused_ = 0;
     v1::OriginState origin_;

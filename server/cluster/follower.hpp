@@ -6,6 +6,7 @@
 #include "server/archive/shared_archive.hpp"
 #include "server/cluster/chosen_runs.hpp"
 #include "server/cluster/engine.hpp"
+#include "server/cluster/snapshot_fetcher.hpp"
 
 #include <chrono>
 #include <cstdint>
@@ -30,6 +31,9 @@ struct Following {
     std::uint64_t steps = 0, items = 0, repeated = 0;  ///< taken, and passed over, since the start
     std::uint64_t refused = 0;                         ///< messages that are none of the origin's, or not understood
     std::vector<std::string> left_out{};               ///< runs that are not taken further now, and why
+    std::string fetching;                              ///< what comes from another server now; empty: nothing
+    std::string fetch_fault;                           ///< why what is to be fetched is not; empty: all is well
+    std::uint64_t fetched_steps = 0;                   ///< of `steps`
 };
 /// That in one sentence, for people.
 std::string text_of(const Following& following);
@@ -46,8 +50,9 @@ Result<void> begin_following(archive::SharedArchive& shared, const EngineAddress
 /// Out      rows of its own archive, a step a transaction; then `taken`. `run_state`, `clocks`: of the origin's current
 ///          run, once its beginning is here
 /// Faults   an engine or an origin that is away is waited for. Where steps of a run are missing, the stream is read
-///          again from its beginning, unless that brought nothing the last time; what still does not follow is refused
-/// Memory   one step and 16 messages
+///          again from its beginning, unless that brought nothing the last time; what still does not follow is fetched
+///          from another server where there is one (docs/decisions/0070), else refused. Other runs go on meanwhile
+/// Memory   one step and 16 messages, and those of SnapshotFetcher
 /// Threads  one of its own, on which all is called. status() from any
 class Follower {
   public:
@@ -56,10 +61,12 @@ class Follower {
         std::filesystem::path archive;  ///< the follower's own, which follows another: begin_following()
         std::uint16_t dictionary = 0;
         ChosenRuns runs{};
+        SnapshotSource snapshots{};                  ///< of what the engine no longer has
         std::chrono::milliseconds wait{100};         ///< for steps, until the origin's state is looked at
         std::chrono::milliseconds look_every{250};   ///< at the origin's state
         std::chrono::milliseconds lost_after{5000};  ///< chosen: five times what an origin is silent at most
         std::chrono::milliseconds again_after{500};
+        std::chrono::milliseconds fetch_again_after{5000};  ///< of a server that refused, or has no more
     };
     struct Parts {
         /// Items that are durable now. What they are is in the archive.

@@ -270,32 +270,26 @@ class Publisher::Thread {
     }
 
     Result<void> send(OpenRun& run, const archive::RunStep& step) {
-        const auto octets = archive::packed(step.rows);
-        const auto pieces = std::max<std::size_t>((octets.size() + piece_octets_max - 1) / piece_octets_max, 1);
-        v1::RunRows message;
-        message.set_archive(identity_);
-        message.set_publisher(name_);
-        message.set_run(run.stored.run.value);
-        message.set_dictionary(run.stored.dictionary);
-        message.set_tables(reader_->tables());
-        *message.mutable_before() = step.before;
-        *message.mutable_after() = step.after;
-        message.set_pieces(static_cast<std::uint32_t>(pieces));
+        v1::RunRows head;
+        head.set_archive(identity_);
+        head.set_publisher(name_);
+        head.set_run(run.stored.run.value);
+        head.set_tables(reader_->tables());
         const auto subject = subject_of_run(identity_, run.stored.run);
         sent_[run.stored.run.value] = step.after;
-        for (std::size_t piece = 0; piece < pieces; ++piece) {
-            message.set_piece(static_cast<std::uint32_t>(piece));
-            message.set_octets(octets.substr(piece * piece_octets_max, piece_octets_max));
-            const auto place = engine_->publish_after(subject, message.SerializeAsString(), run.place);
+        std::size_t octets = 0;
+        for (const auto& message : messages_of(step, std::move(head))) {
+            const auto place = engine_->publish_after(subject, message, run.place);
             if (!place) return place.error();
             run.place = *place;
+            octets += message.size();
             mine_.insert(run.stored.run.value);
         }
         run.position = step.after;
         acknowledged(run, "running");  // it is over once nothing more is found
         const std::scoped_lock lock{mutex_};
         ++status_.steps;
-        status_.octets += octets.size();
+        status_.octets += octets;
         status_.items += step.after.seq() - step.before.seq();
         return {};
     }

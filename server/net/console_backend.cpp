@@ -144,7 +144,8 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
         backend->follows_,
         backend->follower_seed_.empty() ? std::function<void(const ApiRequest&)>{}
                                         : [self](const ApiRequest& call) { self->ask_origin(call); },
-        ProcedureLibrary{chosen.dictionary.empty() ? chosen.dictionary : chosen.dictionary / "procedures"}});
+        ProcedureLibrary{chosen.dictionary.empty() ? chosen.dictionary : chosen.dictionary / "procedures"},
+        chosen.archive});
     backend->check_audit_head();
     backend->adopt_newest_run();
     backend->note_resets();

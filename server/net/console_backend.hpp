@@ -12,6 +12,7 @@
 #include "server/cluster/request_gate.hpp"
 #include "server/cluster/request_sender.hpp"
 #include "server/links/downlink_follower.hpp"
+#include "server/net/http_client.hpp"
 #include "server/net/web_server.hpp"
 #include "server/rehearsal/timeline_check.hpp"
 
@@ -44,6 +45,7 @@ class ConsoleBackend {
         cluster::EngineAddress follow_by{};    ///< no URL: this server follows none
         std::string follow_archive{};          ///< identity, or its beginning; empty: the only one
         cluster::ChosenRuns follow_runs{};     ///< that are followed
+        HttpClient::Settings snapshots{};      ///< of what the engine no longer has; no server: none
         std::filesystem::path follower_key{};  ///< signs what people here ask of the origin; empty: they only watch
     };
     /// Memory blocks of this size or more are mapped separately and returned to the system when freed; chosen. So the

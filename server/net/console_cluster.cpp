@@ -15,6 +15,18 @@ namespace {
 
 constexpr unsigned standing_ms = 1'000;  // chosen: as often as lags are told
 
+cluster::SnapshotSource snapshots_from(const HttpClient::Settings& server) {
+    if (server.server.empty()) return {};
+    return {server.server,
+            [client = HttpClient{server}](const std::string& path, const auto& take,
+                                          const auto& stop) -> Result<cluster::SnapshotSource::Answer> {
+                auto answer = client.get(path, take, stop);
+                if (!answer) return answer.error();
+                return cluster::SnapshotSource::Answer{answer->status, std::move(answer->body),
+                                                       std::move(answer->lost)};
+            }};
+}
+
 }  // namespace
 
 /// Whether this archive follows another, from now on. Its writer is open, and is opened anew where runs that went on
@@ -28,6 +40,8 @@ Result<void> ConsoleBackend::choose_origin(archive::Archive& archive) {
         identity_ = std::move(*identity);
     }
     if (!settings_.follow_by.url.empty()) {
+        if (!settings_.snapshots.server.empty())
+            if (auto usable = HttpClient{settings_.snapshots}.check(); !usable) return usable;
         const auto begun =
             cluster::begin_following(*shared, settings_.follow_by, settings_.follow_archive, dictionary_.id);
         if (!begun) return Error{"--follow: " + begun.error().message};
@@ -80,6 +94,7 @@ Result<void> ConsoleBackend::publish_and_follow() {
         settings.archive = settings_.archive;
         settings.dictionary = dictionary_.id;
         settings.runs = settings_.follow_runs;
+        settings.snapshots = snapshots_from(settings_.snapshots);
         auto started = cluster::Follower::start(std::move(settings), std::move(parts));
         if (!started) return started.error();
         follower_ = std::move(*started);
@@ -275,8 +290,12 @@ Replication ConsoleBackend::replication() const {
             {"following_behind_seconds", "time since none was missing", now.behind_s},
             {"following_silent_seconds", "time since the origin was heard", now.silent_s},
             {"following_lost", "1 while the origin is silent", now.lost ? 1.0 : 0.0},
+            {"following_fetch_fault", "1 while what the engine no longer has cannot be fetched; /healthz says why",
+             now.fetch_fault.empty() ? 0.0 : 1.0},
             {"following_left_out", "runs that are not taken further", static_cast<double>(now.left_out.size())},
             {"followed_steps_total", "steps that were taken", static_cast<double>(now.steps), true},
+            {"followed_fetched_steps_total", "of them, those that came from another server's API",
+             static_cast<double>(now.fetched_steps), true},
             {"followed_items_total", "items in them", static_cast<double>(now.items), true},
             {"followed_refused_total", "messages that were refused", static_cast<double>(now.refused), true}};
     }

@@ -87,6 +87,7 @@ const Row rows[] = {
     {"GET", "/api/v1/runs/{run}/prediction", "observer", "/api/v1/runs/latest/prediction", "", 404},
     {"GET", "/api/v1/runs/{run}/samples", "observer", "/api/v1/runs/latest/samples", "", 404},
     {"GET", "/api/v1/runs/{run}/raw", "observer", "/api/v1/runs/latest/raw", "", 404},
+    {"GET", "/api/v1/runs/{run}/rows", "instructor", "/api/v1/runs/latest/rows", "", 404},
     {"GET", "/api/v1/runs/{run}/forecasts", "observer", "/api/v1/runs/latest/forecasts", "", 404},
     {"POST", "/api/v1/runs/{run}/forecasts", "controller", "/api/v1/runs/latest/forecasts", "{", 400},
     {"GET", "/api/v1/runs/{run}/forecasts/{forecast}", "observer", "/api/v1/runs/latest/forecasts/1", "", 404},

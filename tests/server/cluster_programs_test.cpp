@@ -3,7 +3,10 @@
 #include "server/archive/archive_comparison.hpp"
 #include "server/archive/sqlite.hpp"
 #include "server/base/json.hpp"
+#include "server/cluster/engine.hpp"
+#include "server/cluster/run_messages.hpp"
 #include "tests/server/cluster/nats_server.hpp"
+#include "tests/server/cluster/tcp_proxy.hpp"
 #include "tests/server/run_copies.hpp"
 #include "tests/server/web_client.hpp"
 #include "tests/support/catch.hpp"
@@ -81,6 +84,14 @@ class Serving {
         return runs.runs().empty() ? v1::RunState{} : runs.runs(0);
     }
     const std::filesystem::path& archive() const { return archive_; }
+    std::uint16_t port() const { return port_; }
+    /// A figure of /metrics; none: it is not told.
+    std::optional<double> figure(const std::string& name) const {
+        const auto text = ask("GET", "/metrics").body;
+        const auto at = text.find("\naeolis_" + name + " ");
+        if (at == std::string::npos) return std::nullopt;
+        return std::stod(text.substr(at + name.size() + 9));
+    }
 
   private:
     const std::filesystem::path archive_;
@@ -165,6 +176,50 @@ void kill_programs(int kills, std::uint32_t seed) {
 }
 
 }  // namespace
+
+TEST_CASE("the program of a late follower fetches by HTTP what the engine no longer has, though it is cut and killed",
+          "[cluster][R61]") {
+    if (!NatsServer::present() || program().empty()) return;
+    TemporaryFolder folder;
+    const NatsServer engine;
+    const Serving origin{folder / "origin.db", {"--nats", engine.url(), "--scenario", "nominal_auto", "--pace", "0"}};
+    REQUIRE(comes([&] { return origin.newest().state() == v1::RunState::finished; }));
+    REQUIRE(comes([&] { return origin.figure("publishing_waiting_items") == 0.0; }));
+    server::cluster::EngineAddress address;
+    address.url = engine.url();
+    auto client = server::cluster::Engine::connect(address, "test");
+    REQUIRE(client);
+    REQUIRE(client->clear(server::cluster::run_stream, server::cluster::all_runs));
+    go_on(origin);  // another run, which goes on
+    tests::TcpProxy way{origin.port()};
+    way.throttle(1'000'000);
+    const std::vector<std::string> options{"--follow", engine.url(), "--snapshot-from",
+                                           "http" + way.url().substr(way.url().find(':'))};
+    Serving follower{folder / "follower.db", options};
+    const auto fetches = [&] { return follower.figure("followed_fetched_steps_total").value_or(0.0) >= 1.0; };
+    REQUIRE(comes(fetches));
+    way.cut();
+    std::this_thread::sleep_for(1s);
+    CHECK(foreign_rows(follower.archive(), origin.archive()) == 0);
+    way.join();
+    follower.kill();
+    follower.start(options);
+    CHECK(comes(fetches));
+    way.throttle(0);
+    REQUIRE(comes([&] { return origin.newest().state() == v1::RunState::finished; }));
+    std::vector<std::string> differences;
+    CHECK(comes([&] {
+        const auto compared = archive::compare(origin.archive(), follower.archive());
+        if (compared) differences = compared->differences;
+        return compared && compared->differences.empty();
+    }));
+    INFO(fmt::format("{}\n{}", fmt::join(differences, "\n"), follower.ask("GET", "/healthz").body));
+    CHECK(differences.empty());
+    CHECK(faults_of(follower.archive()).empty());
+    CHECK(comes([&] { return follower.figure("following_behind_items") == 0.0; }));
+    CHECK(follower.figure("following_fetch_fault") == 0.0);
+    CHECK(follower.figure("followed_refused_total") == 0.0);
+}
 
 TEST_CASE("the programs of origin, engine and follower, each killed in flight, land and hold the same",
           "[cluster][R61]") {

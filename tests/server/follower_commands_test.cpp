@@ -361,6 +361,55 @@ TEST_CASE("a follower that has not heard its origin says so, and asks nothing th
     CHECK(request.publisher() == "its process");  // the first that was sent
 }
 
+TEST_CASE("a run is fetched by the token of an instructor, and any other is refused in a line",
+          "[cluster][access][R61]") {
+    if (!NatsServer::present()) return;
+    Site site;
+    REQUIRE(comes([&] { return site.origin->figure("aeolis_publishing_waiting_items") == 0.0; }));
+    cluster::EngineAddress administrator;
+    administrator.url = site.engine.url();
+    auto engine = cluster::Engine::connect(administrator, "administrator");
+    REQUIRE(engine);
+    REQUIRE(engine->clear(cluster::run_stream, cluster::all_runs));
+    const auto token_of = [&](const char* role) {
+        const auto reply = site.origin->ask("admin", "POST", "/api/v1/tokens",
+                                            fmt::format(R"({{"name":"{0}_site","role":"{0}"}})", role));
+        INFO(reply.body);
+        REQUIRE(reply.status == 201);
+        v1::Token made;
+        REQUIRE(from_json(reply.body, made));
+        return made.token();
+    };
+    const auto late = [&](const std::string& token) {
+        ConsoleBackend::Settings settings;
+        settings.archive = site.folder / "late.db";
+        settings.accounts = site.folder / "late.json";
+        settings.follow_by.url = site.engine.url();
+        settings.snapshots.server = fmt::format("http://127.0.0.1:{}", site.origin->port());
+        settings.snapshots.token = token;
+        return std::make_unique<Server>(settings, std::nullopt);
+    };
+    write_people(site.folder / "late.json", {{"admin", "administrator"}});
+    for (const auto& [token, says] : {std::pair{std::string{}, "it answers 401: log in first"},
+                                      std::pair{std::string{"no token of it"}, "it answers 401: log in first"},
+                                      std::pair{token_of("director"), "this needs the right to instruct"}}) {
+        const auto server = late(token);
+        const auto told = [&] { return server->ask("admin", "GET", "/healthz").body; };
+        INFO(told());
+        CHECK(comes([&] { return told().find(says) != std::string::npos; }));
+        CHECK(server->figure("aeolis_following_fetch_fault") == 1.0);
+        CHECK(server->figure("aeolis_followed_fetched_steps_total") == 0.0);
+    }
+    CHECK_THAT(site.origin->ask("admin", "GET", "/api/v1/audit").body, Catch::Contains("/runs/1/rows"));
+    const auto server = late(token_of("instructor"));
+    CHECK(comes([&] {
+        return server->figure("aeolis_followed_fetched_steps_total") > 0.0 &&
+               server->figure("aeolis_following_behind_items") == 0.0;
+    }));
+    CHECK(server->figure("aeolis_following_fetch_fault") == 0.0);
+    CHECK_THAT(server->ask("admin", "GET", "/api/v1/runs/1").body, Catch::Contains("\"scenario\":\"nominal\""));
+}
+
 TEST_CASE("each metric that the cluster's alert rules and dashboard name is one that an origin or a follower has",
           "[cluster][monitoring][R61]") {
     if (!NatsServer::present()) return;

@@ -5,7 +5,9 @@
 #include "server/access/this_user.hpp"
 #include "server/api/command_rates.hpp"
 #include "server/archive/items.hpp"
+#include "server/archive/shared_archive.hpp"
 #include "server/base/json.hpp"
+#include "server/cluster/run_snapshot.hpp"
 #include "tests/server/archive/faulty_disk.hpp"
 #include "tests/server/audited.hpp"
 #include "tests/server/running_server.hpp"
@@ -41,6 +43,38 @@ struct Exchange {
 
 }  // namespace
 
+TEST_CASE("a run's rows are given to other servers in messages, behind what they hold", "[http][cluster][R61]") {
+    RunningServer server{short_landing(), 0.0};
+    REQUIRE(archive::SharedArchive::open(server.archive())->identity());
+    const auto ask = [&](const std::string& what) {
+        return web_request(server.port(), "GET", "/api/v1/runs/1" + what);
+    };
+    for (int i = 0; i < 6'000 && ask("").body.find("\"state\":\"finished\"") == std::string::npos; ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds{50});
+    const auto messages_of = [&](const WebReply& reply) {
+        CHECK(reply.status == 200);
+        CHECK(reply.content_type == "application/octet-stream");
+        server::cluster::FramedMessages framed;
+        framed.add(reply.body);
+        std::vector<v1::RunRows> messages;
+        for (auto message = framed.next(); message && *message; message = framed.next())
+            messages.push_back(std::move(**message));
+        CHECK_FALSE(framed.within());
+        return messages;
+    };
+    const auto all = messages_of(ask("/rows"));
+    REQUIRE(all.size() > 2);
+    CHECK(all.front().before().seq() == 0);
+    for (std::size_t each = 1; each < all.size(); ++each)
+        if (all[each].piece() == 0) CHECK(archive::equal(all[each].before(), all[each - 1].after()));
+    const auto held = all[all.size() / 2].before();
+    const auto rest = messages_of(ask(fmt::format("/rows?held=%7B%22seq%22:%22{}%22%7D", held.seq())));
+    REQUIRE_FALSE(rest.empty());
+    CHECK(rest.front().before().seq() == held.seq());
+    CHECK(rest.back().after().seq() == all.back().after().seq());
+    CHECK_THAT(ask("/rows?held=%7B%22seq%22:%22999999999%22%7D").body, Catch::Contains("not up to 999999999"));
+}
+
 TEST_CASE("every route answers what it can and refuses the rest by name", "[http][R43]") {
     RunningServer server{shipped_scenario("nominal"), 100.0};
     const auto port = server.port();
@@ -72,6 +106,10 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
         {"GET", "/api/v1/runs/1/samples?from=2&to=1", "", 400, "upside down"},
         {"GET", "/api/v1/runs/1/samples?limit=1", "", 400, "limit"},
         {"GET", "/api/v1/runs/9/samples", "", 404, "9"},
+        {"GET", "/api/v1/runs/1/rows", "", 409, "nobody follows this archive"},
+        {"GET", "/api/v1/runs/1/rows?held=much", "", 400, "held: "},
+        {"GET", "/api/v1/runs/1/rows?after=1", "", 400, "after"},
+        {"GET", "/api/v1/runs/9/rows", "", 404, "9"},
         {"GET", "/api/v1/runs/1/channels?names=altitude_m&format=protobuf", "", 200, "altitude_m"},
         {"GET", "/api/v1/runs/1/packets?apid=0x20&limit=5", "", 200, "\"packets\":["},
         {"GET", "/api/v1/runs/1/tones", "", 200, "\"tones\":["},

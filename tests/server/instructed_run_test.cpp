@@ -153,6 +153,7 @@ class Controlled {
                                  "/samples?names=altitude_m&to=E-10:00",
                                  "/forecasts",
                                  "/raw?link=uhf_live&format=bin",
+                                 "/rows",
                                  "/score",
                                  "/differences?with=1",
                                  "/preconditions?command=NO_OP"})

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/net/http_client.hpp"
 #include "tests/server/running_server.hpp"
+#include "tests/support/certificate.hpp"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ssl.hpp>
@@ -12,8 +13,6 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <future>
-#include <openssl/pem.h>
-#include <openssl/x509v3.h>
 
 namespace server_tls_test {
 
@@ -27,35 +26,6 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 using error_code = boost::system::error_code;
 using tcp = asio::ip::tcp;
-
-/// A certificate for localhost, signed by itself, and its key.
-void write_certificate(const std::filesystem::path& certificate, const std::filesystem::path& key) {
-    EVP_PKEY* pair = EVP_EC_gen("P-256");
-    X509* made = X509_new();
-    X509_set_version(made, 2);
-    ASN1_INTEGER_set(X509_get_serialNumber(made), 1);
-    X509_gmtime_adj(X509_getm_notBefore(made), -60);
-    X509_gmtime_adj(X509_getm_notAfter(made), 3600);
-    X509_set_pubkey(made, pair);
-    const std::string host = "localhost";
-    X509_NAME_add_entry_by_txt(X509_get_subject_name(made), "CN", MBSTRING_ASC,
-                               reinterpret_cast<const unsigned char*>(host.c_str()), -1, -1, 0);
-    X509_set_issuer_name(made, X509_get_subject_name(made));
-    auto* names = X509V3_EXT_conf_nid(nullptr, nullptr, NID_subject_alt_name, "DNS:localhost");
-    X509_add_ext(made, names, -1);
-    REQUIRE(X509_sign(made, pair, EVP_sha256()) != 0);
-    const auto write = [](const std::filesystem::path& file, auto&& put) {
-        FILE* out = std::fopen(file.c_str(), "w");
-        REQUIRE(out != nullptr);
-        CHECK(put(out) == 1);
-        std::fclose(out);
-    };
-    write(certificate, [&](FILE* out) { return PEM_write_X509(out, made); });
-    write(key, [&](FILE* out) { return PEM_write_PrivateKey(out, pair, nullptr, nullptr, 0, nullptr, nullptr); });
-    X509_EXTENSION_free(names);
-    X509_free(made);
-    EVP_PKEY_free(pair);
-}
 
 struct SecureClient {
     asio::io_context io;
@@ -98,6 +68,64 @@ TEST_CASE("the program's own client speaks only to a server whose certificate is
     CHECK_THAT(post("https", "localhost", {}), Catch::Contains("no safe connection"));
     CHECK_THAT(post("https", "localhost", folder / "no.pem"), Catch::Contains("--authorities"));
     CHECK_THAT(post("http", "localhost", {}), Catch::StartsWith("perhaps sent: ") && Catch::Contains("no answer"));
+}
+
+TEST_CASE("the program's own client gets an answer of any length in parts, by TLS, as long as it wants it",
+          "[access][http]") {
+    const TemporaryFolder folder;
+    write_certificate(folder / "cert.pem", folder / "key.pem");
+    RunningServer server{RunningServer::Secure{folder / "cert.pem", folder / "key.pem"}};
+    const server::HttpClient client{{.server = fmt::format("https://localhost:{}", server.port()),
+                                     .token = "none",
+                                     .authorities = folder / "cert.pem"}};
+    std::string body;
+    std::size_t parts = 0;
+    const auto take = [&](std::string_view part) {
+        body += part;
+        ++parts;
+        return true;
+    };
+    const auto goes_on = [] { return false; };
+    const auto whole = client.get("/api/v1/openapi.yaml", take, goes_on);
+    REQUIRE(whole);
+    CHECK(whole->status == 200);
+    CHECK(whole->lost.empty());
+    CHECK(whole->body.empty());
+    CHECK_THAT(body, Catch::StartsWith("openapi: 3"));
+    CHECK(body.size() > 64'000);
+    CHECK(parts > 1);
+    const auto broken_off = client.get("/api/v1/openapi.yaml", [](std::string_view) { return false; }, goes_on);
+    REQUIRE(broken_off);
+    CHECK_FALSE(broken_off->lost.empty());
+    const auto stopped = client.get("/api/v1/openapi.yaml", take, [] { return true; });
+    REQUIRE(stopped);
+    CHECK(stopped->lost == "the request was broken off");
+    body.clear();
+    const auto refused = client.get("/api/v1/runs/latest/rows", take, goes_on);
+    REQUIRE(refused);
+    CHECK(refused->status == 401);
+    CHECK_THAT(refused->body, Catch::Contains("log in first"));
+    CHECK(body.empty());
+    server.end();
+    const auto away = client.get("/api/v1/openapi.yaml", take, goes_on);
+    REQUIRE_FALSE(away);
+    CHECK_THAT(away.error().message, Catch::StartsWith("no connection: "));
+}
+
+TEST_CASE("what is wrong with a server's address, token or authorities is told before anything is sent", "[http]") {
+    const auto fault = [](server::HttpClient::Settings settings) {
+        settings.server_option = "--snapshot-from";
+        settings.authorities_option = "--snapshot-ca";
+        const auto usable = server::HttpClient{std::move(settings)}.check();
+        return usable ? std::string{} : usable.error().message;
+    };
+    CHECK(fault({.server = "https://origin.example:8443", .token = "a secret"}).empty());
+    CHECK(fault({.server = "http://origin.example:8080"}).empty());
+    CHECK_THAT(fault({.server = "http://origin.example:8080", .token = "a secret"}),
+               Catch::StartsWith("--snapshot-from http://origin.example:8080: ") && !Catch::Contains("a secret"));
+    CHECK_THAT(fault({.server = "origin.example"}), Catch::StartsWith("--snapshot-from origin.example: expected http"));
+    CHECK_THAT(fault({.server = "https://origin.example", .authorities = "/nowhere.pem"}),
+               Catch::StartsWith("--snapshot-ca /nowhere.pem: "));
 }
 
 TEST_CASE("over http the program's own client gives a token to this machine only", "[access][http]") {

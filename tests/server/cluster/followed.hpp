@@ -52,13 +52,15 @@ bool comes(Condition condition) {
 /// An archive, its writer and its publisher.
 class Origin {
   public:
-    Origin(std::filesystem::path file, const std::string& engine)
+    Origin(std::filesystem::path file, const std::string& engine) : Origin(std::move(file), at(engine)) {}
+    Origin(std::filesystem::path file, const cluster::EngineAddress& engine)
         : file_(std::move(file)), archive(std::move(Archive::open(file_)).value()) {
         publish(engine);
     }
-    void publish(const std::string& engine) {
+    void publish(const std::string& engine) { publish(at(engine)); }
+    void publish(const cluster::EngineAddress& engine) {
         cluster::Publisher::Settings settings;
-        settings.engine = at(engine);
+        settings.engine = engine;
         settings.archive = file_;
         settings.dictionary = followed_dictionary.id;
         settings.tell_every = 100ms;
@@ -80,26 +82,33 @@ class Origin {
 class Copy {
   public:
     Copy(std::filesystem::path file, const std::string& engine, const std::string& origin = {},
-         std::uint16_t of_dictionary = followed_dictionary.id, cluster::ChosenRuns runs = {})
+         std::uint16_t of_dictionary = followed_dictionary.id, cluster::ChosenRuns runs = {},
+         cluster::SnapshotSource snapshots = {})
+        : Copy(std::move(file), at(engine), origin, of_dictionary, std::move(runs), std::move(snapshots)) {}
+    Copy(std::filesystem::path file, const cluster::EngineAddress& engine, const std::string& origin = {},
+         std::uint16_t of_dictionary = followed_dictionary.id, cluster::ChosenRuns runs = {},
+         cluster::SnapshotSource snapshots = {})
         : file_(std::move(file)), archive(std::move(Archive::open(file_)).value()) {
         auto shared = SharedArchive::open(file_);
         REQUIRE(shared);
         Result<void> begun;
         const bool followed = comes([&] {
-            begun = cluster::begin_following(*shared, at(engine), origin, of_dictionary);
+            begun = cluster::begin_following(*shared, engine, origin, of_dictionary);
             return begun.ok();  // until the origin has said that it is there
         });
         INFO((begun ? "" : begun.error().message));
         REQUIRE(followed);
         cluster::Follower::Settings settings;
-        settings.engine = at(engine);
+        settings.engine = engine;
         settings.archive = file_;
         settings.dictionary = of_dictionary;
         settings.runs = std::move(runs);
+        settings.snapshots = std::move(snapshots);
         settings.wait = 20ms;
         settings.look_every = 50ms;
         settings.lost_after = 2s;
         settings.again_after = 20ms;
+        settings.fetch_again_after = 100ms;
         cluster::Follower::Parts parts;
         parts.taken = [this](RunId run, archive::Sequence first, archive::Sequence last) {
             const std::scoped_lock lock{mutex_};
