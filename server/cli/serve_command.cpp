@@ -48,7 +48,8 @@ struct ServeOptions {
     std::string follow;           ///< URL; empty: no other server is followed
     std::string follow_archive;   ///< of which archive, where the engine has several
     std::string follow_runs;      ///< numbers and ranges; empty: all runs
-    HttpClient::Settings snapshots{.server_option = "--snapshot-from", .authorities_option = "--snapshot-ca"};
+    HttpClient::Settings snapshots{
+        .server = {}, .server_option = "--snapshot-from", .authorities_option = "--snapshot-ca"};
     std::filesystem::path snapshot_token;  ///< the file of its token; empty: the environment may have one
     std::filesystem::path follower_key;    ///< signs what people here ask of the origin
     std::uint64_t plan_flights = 300;

@@ -247,6 +247,9 @@ Result<Engine> Engine::connect(const EngineAddress& address, const std::string& 
     for (const auto& url : urls) servers.push_back(url.c_str());
     if (urls.size() >= replicas_of_several) state->replicas = replicas_of_several;
     then(natsOptions_SetServers(made, servers.data(), static_cast<int>(servers.size())));
+    // By itself the library speaks without TLS to an engine that asks for none, whatever the scheme.
+    if (std::ranges::any_of(urls, [](const auto& url) { return url.starts_with("tls://"); }))
+        then(natsOptions_SetSecure(made, true));
     then(natsOptions_SetName(made, name.c_str()));
     then(natsOptions_SetTimeout(made, patience.count()));
     then(natsOptions_SetMaxReconnect(made, -1));

@@ -268,17 +268,21 @@ TEST_CASE("users by password, token or nkey are known by it alone, and a wrong o
 TEST_CASE("users by a file of credentials are those whom the account's key signs", "[cluster][R61]") {
     if (!NatsServer::present()) return;
     test::TemporaryFolder folder;
-    const KeyPair authority{1}, account{2}, user{3}, stranger{4};
-    const auto account_text = public_text(account, of_account);
+    const KeyPair authority{1}, account{2}, user{3}, stranger{4}, system{5};  // which JetStream wants
+    const auto account_text = public_text(account, of_account), system_text = public_text(system, of_account);
     write(folder / "jwt.conf",
-          fmt::format("operator: {}\nresolver: MEMORY\nresolver_preload: {{ {}: {} }}\n",
+          fmt::format("operator: {}\nresolver: MEMORY\nsystem_account: {}\nresolver_preload: {{\n{}: {}\n{}: {}\n}}\n",
                       signed_claims(authority, of_operator, public_text(authority, of_operator), "authority",
                                     R"({"type":"operator","version":2})"),
-                      account_text,
+                      system_text, account_text,
                       signed_claims(authority, of_operator, account_text, "account",
                                     R"({"limits":{"subs":-1,"data":-1,"payload":-1,"imports":-1,"exports":-1,)"
                                     R"("wildcards":true,"conn":-1,"leaf":-1,"mem_storage":-1,"disk_storage":-1,)"
-                                    R"("streams":-1,"consumer":-1},"type":"account","version":2})")));
+                                    R"("streams":-1,"consumer":-1},"type":"account","version":2})"),
+                      system_text,
+                      signed_claims(authority, of_operator, system_text, "system",
+                                    R"({"limits":{"subs":-1,"data":-1,"payload":-1,"imports":-1,"exports":-1,)"
+                                    R"("wildcards":true,"conn":-1,"leaf":-1},"type":"account","version":2})")));
     const auto user_claims = [&](const KeyPair& by) {
         return signed_claims(by, of_account, public_text(user, of_user), "user",
                              R"({"subs":-1,"data":-1,"payload":-1,"type":"user","version":2})");
