@@ -91,7 +91,7 @@ TEST_CASE("the program's own client gets an answer of any length in parts, by TL
     CHECK(whole->status == 200);
     CHECK(whole->lost.empty());
     CHECK(whole->body.empty());
-    CHECK_THAT(body, Catch::StartsWith("openapi: 3"));
+    CHECK_THAT(body.substr(0, 200), Catch::Contains("\nopenapi: 3"));
     CHECK(body.size() > 64'000);
     CHECK(parts > 1);
     const auto broken_off = client.get("/api/v1/openapi.yaml", [](std::string_view) { return false; }, goes_on);
