@@ -112,8 +112,11 @@ test('a list of which more is below fades out at its foot, until its end is in s
   const isFalse = (value) => !value;
 
   await waitFor(fades, isTrue);
-  await list.evaluate((each) => each.scrollTo(0, each.scrollHeight));
-  await waitFor(fades, isFalse);
+  // Again and again: events that still come lengthen the list.
+  await waitFor(async () => {
+    await list.evaluate((each) => each.scrollTo(0, each.scrollHeight));
+    return fades();
+  }, isFalse);
   await list.evaluate((each) => each.scrollTo(0, 0));
   await waitFor(fades, isTrue);
   await page.getByTestId('event-search').fill('no event says this');
