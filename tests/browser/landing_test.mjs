@@ -49,7 +49,7 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
   await page.keyboard.press('Enter');
   await shows(
     'command-review',
-    /✓ It would be sent[^]*arms it; nothing is sent yet[^]*✓ parameters received: must be yes is yes/,
+    /✓ It would be sent[^]*arms it; nothing is sent yet[^]*✓ parameters received: yes, as it must be/,
   );
   await page.keyboard.press('Enter');
   await shows('command-armed', /ARMED/);
