@@ -171,6 +171,7 @@ Result<archive::NoteRecord> call_of(const v1::NoteRequest& request, const proced
     const auto* call = calls.call(request.call());
     if (call == nullptr) {
         std::vector<std::string_view> known;
+        known.reserve(calls.calls.size());
         for (const auto& each : calls.calls) known.push_back(each.id);
         return Error{known.empty()
                          ? fmt::format("call: the mission has no standard calls, so no '{}'", request.call())
