@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+import { create } from '@bufbuild/protobuf';
 import { describe, expect, it } from 'vitest';
-import { aRun, aStore, event, firing, samples, stage } from '../testing/fixtures';
+import { ClockReplySchema } from '../gen/aeolis/v1/run_pb';
+import { ENTRY_SCLK, aRun, aStore, ertUs, event, firing, samples, stage, tone } from '../testing/fixtures';
 import { Series } from './series';
+import type { RunStore } from './store';
 import { dayOfYear, duration, fromEntry, readFromEntry, secondsOfDayOfYear, secondsOfErt } from './time';
 
 const f = (...values: number[]) => Float64Array.from(values);
@@ -48,6 +51,25 @@ describe('a series', () => {
     series.append(f(1, 2, 3), f(10, 20, 30));
     expect(series.at(2.5)).toEqual({ sclk: 2, value: 20 });
     expect(series.at(0)).toBeUndefined();
+  });
+});
+
+describe('Earth’s time of a run that is over', () => {
+  const clock = create(ClockReplySchema, { sclk: ENTRY_SCLK, scetUs: ertUs('2012-219T05:00:00.0'), rate: 1 });
+  const over = aRun({ clock, lightTimeS: 100, clocks: undefined });
+  const heard = [
+    event({ id: 5, name: 'X', text: 'x', sclk: 1000, ert: '2012-219T05:02:00.0' }),
+    tone({ tone: 7, sclk: 1000, ertStart: '2012-219T05:03:00.0', ert: '2012-219T05:03:10.0' }),
+  ];
+  const words = (run: RunStore) => dayOfYear(run.ertOf(1000));
+
+  it('is what was heard: the first tone, or else the first live event', () => {
+    expect(words(aStore(heard, over))).toContain('05:03:00');
+    expect(words(aStore(heard.slice(0, 1), over))).toContain('05:02:00');
+  });
+  it('is by clock correlation and light time where nothing was heard, but not of a followed mission', () => {
+    expect(words(aStore([], over))).toContain('05:01:40');
+    expect(aStore([], { ...over, entrySclk: 0 }).ertOf(1000)).toBeNaN();
   });
 });
 

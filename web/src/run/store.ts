@@ -221,19 +221,21 @@ export class RunStore {
     return at.ert_s + (sclk - at.sclk) * (this.run.clock?.rate || 1);
   }
   /**
-   * One instant on both clocks. A run that is over has no clocks any more. Then its clock correlation and light time
-   * give it; without these the first tone, whose SCLK is that of its beginning by light time, or the first live event,
-   * which was under way slightly longer.
+   * One instant on both clocks. A run that is over has no clocks any more. Then what was heard gives it: the first tone,
+   * whose SCLK is that of its beginning by light time, or the first live event, which was under way slightly longer.
+   * Where neither is loaded, clock correlation and light time do, of a run whose entry is known: of a followed mission
+   * the light time is not.
    */
   private get instant(): { sclk: number; ert_s: number } {
     const { ertUs } = this.clocks ?? {};
     if (ertUs !== undefined) return { sclk: this.seenSclk, ert_s: secondsOfErt(ertUs) };
-    const { clock, lightTimeS } = this.run;
-    if (clock) return { sclk: clock.sclk, ert_s: secondsOfErt(clock.scetUs) + lightTimeS };
     const tone = this.tones[0]?.fact;
     if (tone) return { sclk: tone.sclk, ert_s: secondsOfErt(tone.ertStartUs) };
     const event = this.events.find((row) => row.live);
-    return { sclk: event?.fact.sclk ?? NaN, ert_s: event?.ert_s ?? NaN };
+    if (event) return { sclk: event.fact.sclk, ert_s: event.ert_s };
+    const { clock, lightTimeS } = this.run;
+    if (clock && this.entryKnown) return { sclk: clock.sclk, ert_s: secondsOfErt(clock.scetUs) + lightTimeS };
+    return { sclk: NaN, ert_s: NaN };
   }
 
   /** Whether an item dated `ert_s` was known on Earth when the vehicle was heard at `cutoff`. */
