@@ -77,7 +77,7 @@ function Form() {
 
   return (
     <section
-      class="report"
+      class="report corner-sheet"
       role="dialog"
       aria-labelledby="report-title"
       data-testid="report"

@@ -77,7 +77,7 @@ function List() {
   };
   return (
     <section
-      class="calls-list"
+      class="calls-list corner-sheet"
       role="dialog"
       aria-label="standard calls"
       data-testid="calls"
