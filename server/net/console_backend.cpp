@@ -344,9 +344,9 @@ StreamHub::Services ConsoleBackend::stream_services() {
         if (const auto id = ids.find(name); id != ids.end()) return id->second;
         return channel_named(dictionary_, "channel_names", name).error();
     };
-    services.has_channel = [this](std::uint32_t id) {
-        return std::ranges::any_of(dictionary_.channels, [&](const auto& channel) { return channel.id.value == id; });
-    };
+    std::unordered_set<std::uint32_t> known;
+    for (const auto& channel : dictionary_.channels) known.insert(channel.id.value);
+    services.has_channel = [known = std::move(known)](std::uint32_t id) { return known.contains(id); };
     return services;
 }
 
