@@ -91,7 +91,8 @@ void write(MetricsText& text, const std::map<std::string, archive::LinkTotals>& 
                                            {"late", counted.late_frames},
                                            {"cut", counted.cut_frames},
                                            {"corrected", counted.corrected_frames},
-                                           {"uncorrectable", counted.uncorrectable_frames}})
+                                           {"uncorrectable", counted.uncorrectable_frames},
+                                           {"other_data", counted.other_data_frames}})
             text.line("link_frames_total", fmt::format("{{link=\"{}\",kind=\"{}\"}}", link, kind), number);
     }
     text.begin("link_faults_total", "counter", "what else was wrong on a link, and what was made good");
@@ -101,6 +102,7 @@ void write(MetricsText& text, const std::map<std::string, archive::LinkTotals>& 
                                            {"slips", told.counters.slips},
                                            {"skipped_octets", told.counters.skipped_octets},
                                            {"corrected_symbols", told.counters.corrected_symbols},
+                                           {"corrected_headers", told.counters.corrected_headers},
                                            {"forgotten_channels", told.counters.forgotten_channels},
                                            {"encapsulation_packets", told.packets.encapsulation_packets},
                                            {"cut_packets", told.packets.cut_packets},

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/archive/item_rows.hpp"
+#include "server/archive/link_total_columns.hpp"
 #include "server/archive/path_comparison.hpp"
 #include "server/archive/reader.hpp"
 #include "server/archive/reader_state.hpp"
@@ -41,11 +42,6 @@ const std::string totals_sql = std::string("SELECT (SELECT word FROM words WHERE
 constexpr char selections_sql[] =
     "SELECT octets FROM packets WHERE run = ?1 AND apid = ?2 AND source = 2 AND packet = ?3 ORDER BY sclk";
 
-constexpr char counters_sql[] =
-    "SELECT link, octets, frames, bad_crc, bad_header, skipped_octets, gaps, missing_frames,"
-    " repeated_frames, octets_per_s, late_frames, restarts, cut_frames, slips, corrected_frames, corrected_symbols,"
-    " uncorrectable_frames, forgotten_channels, packets, idle_packets, encapsulation_packets, cut_packets,"
-    " lost_segments, unreadable_octets, bad_datagrams FROM link_totals WHERE run = ?1 ORDER BY link";
 constexpr char sequences_sql[] =
     "SELECT link, packets, name, received, gaps, missing, repeated, late, restarts, wraps FROM sequence_totals"
     " WHERE run = ?1 ORDER BY link, packets, name";
@@ -212,7 +208,8 @@ Result<void> Reader::add_tones(RunId run, bool complete, v1::ProofReport& report
 }
 
 Result<void> Reader::add_counters(RunId run, v1::ProofReport& report) {
-    auto rows = state_->query(counters_sql);
+    static const std::string sql = link_totals_of_run_sql();
+    auto rows = state_->query(sql.c_str());
     if (!rows) return rows.error();
     (*rows)->bind(1, std::int64_t{run.value});
     for (;;) {
@@ -220,33 +217,12 @@ Result<void> Reader::add_counters(RunId run, v1::ProofReport& report) {
         if (!found) return found.error();
         if (!*found) return add_sequences(run, report);
         const auto& row = **rows;
-        const auto number = [&](int column) { return static_cast<std::uint64_t>(row.integer(column)); };
         auto& counters = *report.add_counters();
         counters.set_link(std::string{row.text(0)});
-        counters.set_octets(number(1));
-        counters.set_frames(number(2));
-        counters.set_bad_crc(number(3));
-        counters.set_bad_header(number(4));
-        counters.set_skipped_octets(number(5));
-        counters.set_gaps(number(6));
-        counters.set_missing_frames(number(7));
-        counters.set_repeated_frames(number(8));
-        counters.set_octets_per_s(row.real(9));
-        counters.set_late_frames(number(10));
-        counters.set_restarts(number(11));
-        counters.set_cut_frames(number(12));
-        counters.set_slips(number(13));
-        counters.set_corrected_frames(number(14));
-        counters.set_corrected_symbols(number(15));
-        counters.set_uncorrectable_frames(number(16));
-        counters.set_forgotten_channels(number(17));
-        counters.set_packets(number(18));
-        counters.set_idle_packets(number(19));
-        counters.set_encapsulation_packets(number(20));
-        counters.set_cut_packets(number(21));
-        counters.set_lost_segments(number(22));
-        counters.set_unreadable_octets(number(23));
-        counters.set_bad_datagrams(number(24));
+        counters.set_octets_per_s(row.real(1));
+        int place = 2;
+        for (const auto& column : link_total_columns())
+            column.set(counters, static_cast<std::uint64_t>(row.integer(place++)));
     }
 }
 

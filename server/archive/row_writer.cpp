@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/archive/row_writer.hpp"
+#include "server/archive/link_total_columns.hpp"
 
 #include "server/archive/item_rows.hpp"
 #include "server/archive/pyramid.hpp"
@@ -45,6 +46,7 @@ Result<RowWriter> RowWriter::open(sqlite::Database& database) {
         return done;
     });
     if (!items) return items.error();
+    const std::string put_totals = put_link_totals_sql();
     const std::pair<sqlite::Statement RowWriter::*, const char*> statements[] = {
         {&RowWriter::search_, add_to_search_sql},
         {&RowWriter::segment_number_, "SELECT max(segment) FROM segments WHERE segment BETWEEN ?1 AND ?2"},
@@ -58,8 +60,7 @@ Result<RowWriter> RowWriter::open(sqlite::Database& database) {
         {&RowWriter::column_, "INSERT INTO segment_columns VALUES (?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::link_number_, "SELECT number FROM words WHERE kind = 'link' AND word = ?"},
         {&RowWriter::link_word_, "INSERT INTO words SELECT 'link', max(number) + 1, ? FROM words WHERE kind = 'link'"},
-        {&RowWriter::link_totals_,
-         "INSERT OR REPLACE INTO link_totals VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)"},
+        {&RowWriter::link_totals_, put_totals.c_str()},
         {&RowWriter::sequence_totals_, "INSERT OR REPLACE INTO sequence_totals VALUES (?,?,?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::raw_, "INSERT OR IGNORE INTO raw_octets VALUES (?,?,?,?,?)"},
         {&RowWriter::raw_kind_, "INSERT INTO words VALUES ('octets of ' || ?1, ?2, ?3) ON CONFLICT DO UPDATE SET"
@@ -244,33 +245,9 @@ Result<void> RowWriter::totals(RunId run, const RecordingTotals& totals) {
 }
 
 Result<void> RowWriter::link_totals(RunId run, const LinkTotals& totals) {
-    const telemetry::LinkCounters& counted = totals.counters;
-    link_totals_.bind(1, std::int64_t{run.value})
-        .bind(2, std::string_view(totals.link))
-        .bind(3, sqlite::number(counted.octets))
-        .bind(4, sqlite::number(counted.frames))
-        .bind(5, sqlite::number(counted.bad_crc))
-        .bind(6, sqlite::number(counted.bad_header))
-        .bind(7, sqlite::number(counted.skipped_octets))
-        .bind(8, sqlite::number(counted.gaps))
-        .bind(9, sqlite::number(counted.missing_frames))
-        .bind(10, sqlite::number(counted.repeated_frames))
-        .bind(11, totals.octets_per_s)
-        .bind(12, sqlite::number(counted.late_frames))
-        .bind(13, sqlite::number(counted.restarts))
-        .bind(14, sqlite::number(counted.cut_frames))
-        .bind(15, sqlite::number(counted.slips))
-        .bind(16, sqlite::number(counted.corrected_frames))
-        .bind(17, sqlite::number(counted.corrected_symbols))
-        .bind(18, sqlite::number(counted.uncorrectable_frames))
-        .bind(19, sqlite::number(counted.forgotten_channels))
-        .bind(20, sqlite::number(totals.packets.packets))
-        .bind(21, sqlite::number(totals.packets.idle_packets))
-        .bind(22, sqlite::number(totals.packets.encapsulation_packets))
-        .bind(23, sqlite::number(totals.packets.cut_packets))
-        .bind(24, sqlite::number(totals.packets.lost_segments))
-        .bind(25, sqlite::number(totals.packets.unreadable_octets))
-        .bind(26, sqlite::number(totals.bad_datagrams));
+    link_totals_.bind(1, std::int64_t{run.value}).bind(2, std::string_view(totals.link)).bind(3, totals.octets_per_s);
+    int parameter = 4;
+    for (const auto& column : link_total_columns()) link_totals_.bind(parameter++, sqlite::number(column.of(totals)));
     if (auto done = link_totals_.run(); !done) return done;
     for (const auto& sequence : totals.sequences)
         if (auto done = sequence_totals(run, totals.link, sequence); !done) return done;

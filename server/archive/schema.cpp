@@ -3,6 +3,7 @@
 
 #include "server/archive/archive.hpp"
 #include "server/archive/item_rows.hpp"
+#include "server/archive/link_total_columns.hpp"
 
 #include <string_view>
 
@@ -10,7 +11,7 @@ namespace aeolis::archive {
 
 namespace {
 
-// All tables except those of items (item_tables.hpp), explained in docs/archive.md. *_sclk: seconds of the spacecraft
+// All tables except those of items (item_tables.hpp) and of links' totals (link_total_columns.hpp), explained in docs/archive.md. *_sclk: seconds of the spacecraft
 // clock; *_us: microseconds since 2000-01-01T12:00:00 UTC. key = run << 40 | seq.
 const char* const tables_sql = R"sql(
 CREATE TABLE dictionaries (
@@ -67,16 +68,6 @@ CREATE TABLE pyramid (
     PRIMARY KEY (run, packet, source, level, position)) STRICT, WITHOUT ROWID;
 CREATE TABLE pyramid_columns (key INTEGER PRIMARY KEY, nodes BLOB NOT NULL) STRICT;
 
-CREATE TABLE link_totals (
-    run INTEGER NOT NULL, link TEXT NOT NULL, octets INTEGER NOT NULL, frames INTEGER NOT NULL,
-    bad_crc INTEGER NOT NULL, bad_header INTEGER NOT NULL, skipped_octets INTEGER NOT NULL, gaps INTEGER NOT NULL,
-    missing_frames INTEGER NOT NULL, repeated_frames INTEGER NOT NULL, octets_per_s REAL NOT NULL,
-    late_frames INTEGER NOT NULL,
-    restarts INTEGER NOT NULL, cut_frames INTEGER NOT NULL, slips INTEGER NOT NULL, corrected_frames INTEGER NOT NULL,
-    corrected_symbols INTEGER NOT NULL, uncorrectable_frames INTEGER NOT NULL, forgotten_channels INTEGER NOT NULL,
-    packets INTEGER NOT NULL, idle_packets INTEGER NOT NULL, encapsulation_packets INTEGER NOT NULL,
-    cut_packets INTEGER NOT NULL, lost_segments INTEGER NOT NULL, unreadable_octets INTEGER NOT NULL,
-    bad_datagrams INTEGER NOT NULL, PRIMARY KEY (run, link)) STRICT, WITHOUT ROWID;
 CREATE TABLE sequence_totals (
     run INTEGER NOT NULL, link TEXT NOT NULL, packets INTEGER NOT NULL, name TEXT NOT NULL, received INTEGER NOT NULL,
     gaps INTEGER NOT NULL, missing INTEGER NOT NULL, repeated INTEGER NOT NULL, late INTEGER NOT NULL,
@@ -306,11 +297,11 @@ Result<bool> is_empty(sqlite::Database& database) {
         return of_another_build(database, "was written before the first release, in another layout");
     if (*id != application_id || *version < 1) return not_ours(database);
     if (*version == schema_version) {
-        const auto whole = database.integer_of("SELECT count(*) FROM pragma_table_info('notes')"
-                                               " WHERE name = 'reads_back'");
+        const auto whole = database.integer_of("SELECT count(*) FROM pragma_table_info('link_totals')"
+                                               " WHERE name = 'corrected_headers'");
         if (!whole) return whole.error();
         if (*whole == 0)
-            return of_another_build(database, "was written by a build of before 0.2.0, without standard calls");
+            return of_another_build(database, "was written by a build of before 0.2.0, with other counters of links");
         return false;
     }
     const auto why =
@@ -348,8 +339,8 @@ Result<void> prepare_for_writing(sqlite::Database& database) {
     if (!transaction) return transaction.error();
     const std::string marks = "PRAGMA application_id = " + std::to_string(application_id) +
                               "; PRAGMA user_version = " + std::to_string(schema_version);
-    for (const std::string& sql :
-         {marks, item_tables_sql(), std::string(tables_sql), std::string(views_sql), search_sql()})
+    for (const std::string& sql : {marks, item_tables_sql(), std::string(tables_sql), link_totals_table_sql(),
+                                   std::string(views_sql), search_sql()})
         if (auto done = database.execute(sql.c_str()); !done) return done;
     return transaction->commit();
 }

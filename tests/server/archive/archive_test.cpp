@@ -113,16 +113,16 @@ TEST_CASE("what is not an archive is refused by name and left as it was", "[arch
         CHECK(Archive::open(file).error().message == line);
         CHECK(Reader::open(file, test::small_dictionary()).error().message == line);
     }
-    SECTION("an archive of a build without standard calls") {
+    SECTION("an archive of a build with other counters of links") {
         const auto file = folder / "older.db";
         REQUIRE(Archive::open(file).ok());
         {
             auto older = sqlite::Database::open(file.string(), sqlite::Mode::read_write_create);
-            REQUIRE(older->execute("DROP VIEW shift_log; ALTER TABLE notes DROP COLUMN reads_back").ok());
+            REQUIRE(older->execute("ALTER TABLE link_totals DROP COLUMN corrected_headers").ok());
         }
         const std::string line =
-            file.string() + " was written by a build of before 0.2.0, without standard calls: open it with the Aeolis "
-                            "that wrote it, or name another file";
+            file.string() + " was written by a build of before 0.2.0, with other counters of links: open it with the "
+                            "Aeolis that wrote it, or name another file";
         CHECK(Archive::open(file).error().message == line);
         CHECK(Reader::open(file, test::small_dictionary()).error().message == line);
     }

@@ -543,7 +543,9 @@ TEST_CASE("one bit that differs between live and recorded is found, with the oct
                             .skipped_octets = 4,
                             .gaps = 1,
                             .missing_frames = 2,
-                            .repeated_frames = 0},
+                            .repeated_frames = 0,
+                            .other_data_frames = 6,
+                            .corrected_headers = 7},
                            12.5,
                            {.packets = 9, .cut_packets = 2},
                            4,
@@ -569,6 +571,9 @@ TEST_CASE("one bit that differs between live and recorded is found, with the oct
     CHECK(report->counters(0).missing_frames() == 2);
     CHECK(report->counters(0).cut_packets() == 2);
     CHECK(report->counters(0).bad_datagrams() == 4);
+    CHECK(report->counters(0).other_data_frames() == 6);
+    CHECK(report->counters(0).corrected_headers() == 7);
+    CHECK(report->counters(0).octets_per_s() == 12.5);
     REQUIRE(report->counters(0).sequences_size() == 2);
     CHECK(report->counters(0).sequences(0).missing() == 2);
     CHECK(report->counters(0).sequences(1).name() == "APID 5");

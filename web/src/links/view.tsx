@@ -92,6 +92,8 @@ function packetFaults(counters: LinkCounters): string {
       [counters.encapsulationPackets, 'encapsulation packets not decoded'],
       [counters.unreadableOctets, 'octets unreadable'],
       [counters.badDatagrams, 'bad datagrams'],
+      [counters.otherDataFrames, 'frames whose data are not packets'],
+      [counters.correctedHeaders, 'headers corrected'],
       [counters.slips, 'slips of bits'],
       [counters.forgottenChannels, 'virtual channels forgotten'],
     ] as const
