@@ -220,6 +220,19 @@ void check_air(const Scenario& s, std::vector<std::string>& found) {
                         " m above the landing radius, an entry needs " + number(low_m) + " … " + number(high_m));
 }
 
+void check_grid(const Scenario& s, std::vector<std::string>& found) {
+    if (!s.ground.grid) return;
+    constexpr double least_m = 1000.0;  // our assumption: what the radar sees from where it decides
+    const double reach_m = std::max(least_m, 0.5 * s.target.ellipse_major_m);
+    if (!s.ground.grid->covers(reach_m))
+        found.push_back("ground.grid: does not reach " + number(reach_m) +
+                        (reach_m > least_m ? " m from the target to all sides, as the target's ellipse does"
+                                           : " m from the target to all sides"));
+    if (const double at_target_m = s.ground.grid->height_m(0.0, 0.0); std::abs(at_target_m) > 1000.0)
+        found.push_back("ground.grid: at the target it lies " + number(at_target_m) +
+                        " m over the landing radius: is that the zero of its heights (grid_landing_m)?");
+}
+
 bool is_word(const std::string& word) {
     return !word.empty() && std::ranges::all_of(word, [](char c) {
         return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
@@ -469,6 +482,7 @@ std::vector<std::string> impossible_values(const Scenario& scenario) {
     check_tracking_passes(scenario.radio.tracking_passes, found);
     check_tone_outages(scenario.radio.tone_outages, found);
     check_density_scale(scenario.density_scale, found);
+    check_grid(scenario, found);
     check_air(scenario, found);
     check_dispersion_moment(scenario, found);
     check_commands(scenario, found);

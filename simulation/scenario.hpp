@@ -5,9 +5,11 @@
 #include "flight/devices/device_messages.hpp"
 #include "flight/devices/effectors.hpp"
 #include "flight/load.hpp"
+#include "simulation/mars/height_grid.hpp"
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -108,7 +110,8 @@ struct Dispersions {
 struct Ground {
     double height_m = 0.0;  ///< at the target
     double slope_deg = 0.0;
-    double uphill_azimuth_deg = 0.0;  ///< direction of the rise, from north to east
+    double uphill_azimuth_deg = 0.0;           ///< direction of the rise, from north to east
+    std::shared_ptr<const HeightGrid> grid{};  ///< adds its heights to the plane; none: there is the plane alone
 };
 
 /// Atmosphere scale by height above the landing radius: density = table × scale.

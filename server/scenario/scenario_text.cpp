@@ -2,6 +2,7 @@
 #include "server/scenario/scenario_text.hpp"
 
 #include "server/scenario/air_table.hpp"
+#include "server/scenario/height_grid_text.hpp"
 
 #include <chrono>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include <google/protobuf/io/tokenizer.h>
 #include <google/protobuf/text_format.h>
 #include <initializer_list>
+#include <memory>
 #include <sstream>
 #include <utility>
 
@@ -396,6 +398,9 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
     if (!message.air_table().empty()) return Error{"air_table: only a file can name another"};
     if (!message.wind_table().empty()) return Error{"wind_table: only a file can name another"};
     if (message.air_table_landing_m() != 0.0) return Error{"air_table_landing_m: only a file can name a table"};
+    if (const auto& ground = message.ground(); !ground.grid_file().empty() || ground.grid_target_x_m() != 0.0 ||
+                                               ground.grid_target_y_m() != 0.0 || ground.grid_landing_m() != 0.0)
+        return Error{"ground.grid_file: only a file can name another, and say where the target lies in it"};
     if (message.entry_scet().empty()) return Error{"entry_scet: missing"};
     const auto entry_scet = scet_from_text(message.entry_scet());
     if (!entry_scet)
@@ -414,6 +419,11 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
     read(message.entry(), entry_fields, scenario.entry);
     read(message.target(), target_fields, scenario.target);
     read(message.ground(), ground_fields, scenario.ground);
+    if (!message.ground().grid().empty()) {
+        auto grid = height_grid_from_text(message.ground().grid());
+        if (!grid) return Error{"ground.grid: " + grid.error().message};
+        scenario.ground.grid = std::make_shared<const simulation::HeightGrid>(std::move(grid).value());
+    }
     read(message.masses(), mass_fields, scenario.masses);
     read(message.gyration(), gyration_fields, scenario.gyration);
     read(message.stations(), station_fields, scenario.stations);
@@ -496,6 +506,7 @@ v1::Scenario scenario_to_message(const Scenario& scenario) {
     write(scenario.entry, entry_fields, *message.mutable_entry());
     write(scenario.target, target_fields, *message.mutable_target());
     write(scenario.ground, ground_fields, *message.mutable_ground());
+    if (scenario.ground.grid) message.mutable_ground()->set_grid(grid_text(*scenario.ground.grid));
     write(scenario.masses, mass_fields, *message.mutable_masses());
     write(scenario.gyration, gyration_fields, *message.mutable_gyration());
     write(scenario.stations, station_fields, *message.mutable_stations());
@@ -581,6 +592,25 @@ void clear_lists_of(const v1::Scenario& message, v1::Scenario& base) {
         if (field->is_repeated()) base.GetReflection()->ClearField(&base, field);
 }
 
+/// Replaces the name of a grid by its heights.
+Result<void> fill_grid(v1::Ground& ground, const std::filesystem::path& folder) {
+    const GridDatum datum{ground.grid_target_x_m(), ground.grid_target_y_m(), ground.grid_landing_m()};
+    ground.clear_grid_target_x_m();
+    ground.clear_grid_target_y_m();
+    ground.clear_grid_landing_m();
+    const std::string name = std::exchange(*ground.mutable_grid_file(), {});
+    if (name.empty()) {
+        if (datum.target_x_m != 0.0 || datum.target_y_m != 0.0 || datum.landing_m != 0.0)
+            return Error{"ground.grid_file: missing, and something is said of its coordinates"};
+        return {};
+    }
+    if (!ground.grid().empty()) return Error{"ground.grid_file: the scenario has a grid of its own"};
+    const auto grid = height_grid_from_file(folder / name, datum);
+    if (!grid) return Error{"ground.grid_file: " + grid.error().message};
+    ground.set_grid(grid_text(*grid));
+    return {};
+}
+
 /// Replaces the names of tables by their rows.
 Result<void> fill_tables(v1::Scenario& message, const std::filesystem::path& folder) {
     if (const std::string name = std::exchange(*message.mutable_air_table(), {}); !name.empty()) {
@@ -600,6 +630,7 @@ Result<void> fill_tables(v1::Scenario& message, const std::filesystem::path& fol
         if (!winds) return Error{"wind_table: " + winds.error().message};
         for (const auto& row : *winds) write(row, wind_fields, *message.add_winds());
     }
+    if (message.has_ground()) return fill_grid(*message.mutable_ground(), folder);
     return {};
 }
 

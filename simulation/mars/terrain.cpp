@@ -12,7 +12,8 @@ constexpr double slope_reach_m =
 
 }  // namespace
 
-Terrain::Terrain(const Scenario& scenario, Random random) : landing_radius_m_(scenario.target.radius_m) {
+Terrain::Terrain(const Scenario& scenario, Random random)
+    : landing_radius_m_(scenario.target.radius_m), grid_(scenario.ground.grid) {
     const Dispersions& errors = scenario.dispersions;
     height_m_ = scenario.ground.height_m + errors.terrain_height_m * random.normal();
     const double rise = std::tan(scenario.ground.slope_deg * degree_rad);
@@ -23,20 +24,45 @@ Terrain::Terrain(const Scenario& scenario, Random random) : landing_radius_m_(sc
     const Horizon target =
         horizon(place(scenario.target.latitude_deg * degree_rad, scenario.target.longitude_deg * degree_rad, 1.0));
     rise_M_ = east * target.east + north * target.north;
+    east_M_ = target.east;
+    north_M_ = target.north;
 }
 
 double Terrain::radius_m(const Vector3& p) const {
     const double level_beyond_m = slope_reach_m * rise_M_.norm();
-    return landing_radius_m_ + height_m_ +
-           std::clamp(landing_radius_m_ * p.dot(rise_M_) / p.norm(), -level_beyond_m, level_beyond_m);
+    const double plane_m = landing_radius_m_ + height_m_ +
+                           std::clamp(landing_radius_m_ * p.dot(rise_M_) / p.norm(), -level_beyond_m, level_beyond_m);
+    return grid_ ? plane_m + grid_->height_m(from_target_m(p, east_M_), from_target_m(p, north_M_)) : plane_m;
 }
 
 Vector3 Terrain::normal(const Vector3& p) const {
     const Vector3 up = p.normalized();
-    return (up - (rise_M_ - rise_M_.dot(up) * up)).normalized();
+    if (!grid_) return (up - (rise_M_ - rise_M_.dot(up) * up)).normalized();
+    const auto of_grid = grid_->rise(from_target_m(p, east_M_), from_target_m(p, north_M_));
+    const Vector3 rise_M = rise_M_ + of_grid.east * east_M_ + of_grid.north * north_M_;
+    return (up - (rise_M - rise_M.dot(up) * up)).normalized();
+}
+
+Terrain::Meeting Terrain::meet_grid(const Vector3& p, const Vector3& direction_M) const {
+    constexpr double near_m = 0.01, reach_m = 50000.0;  // chosen: below any noise of a radar, and above its range
+    constexpr int steps_max = 200;                      // chosen: only rays that graze the ground take as many
+    const double steepest = grid_->steepest() + rise_M_.norm();
+    double range_m = 0.0;
+    for (int step = 0; step < steps_max && range_m < reach_m; ++step) {
+        const Vector3 at = p + range_m * direction_M;
+        const double over_m = height_m(at);
+        if (over_m < near_m) return {true, range_m, -direction_M.dot(normal(at))};
+        // The ray comes no faster towards the ground than it falls, and than the ground rises below it.
+        const double falls = -direction_M.dot(at) / at.norm();
+        const double nears = falls + steepest * std::sqrt(std::max(0.0, 1.0 - falls * falls));
+        if (nears <= 0.0) return {};
+        range_m += over_m / nears;
+    }
+    return {};
 }
 
 Terrain::Meeting Terrain::meet(const Vector3& p, const Vector3& direction_M) const {
+    if (grid_) return meet_grid(p, direction_M);
     const double ground_m = radius_m(p);
     const Vector3 up = p.normalized();
     const Vector3 upright = normal(p);

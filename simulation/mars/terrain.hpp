@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "simulation/mars/height_grid.hpp"
 #include "simulation/mars/point_mass.hpp"
 #include "simulation/random.hpp"
 #include "simulation/scenario.hpp"
 
+#include <memory>
+
 namespace aeolis::simulation {
 
-/// The ground around the target: the sphere of the landing radius, raised by a height and tilted by an even slope.
+/// The ground around the target: the sphere of the landing radius, raised by a height and tilted by an even slope, and
+/// on it the scenario's grid of heights if it has one.
 ///
-/// Left out: rocks, craters and all real terrain.
+/// Left out: rocks, and all that is smaller than a cell of the grid.
 /// Frame M        Valid within 30 km of the target: there a tilted plane and a tilted sphere differ by a percent of the
 ///                slope
 class Terrain {
@@ -26,8 +30,8 @@ class Terrain {
     /// Unit normal of the ground there, pointing away from it.
     Vector3 normal(const Vector3& p_MoB_M) const;
 
-    /// The point where a ray from `p_MoB_M` along the unit vector `direction_M` meets the ground. The ground is taken
-    /// as the sphere that touches it below the start.
+    /// The first point where a ray from `p_MoB_M` along the unit vector `direction_M` meets the ground. Without a grid
+    /// the ground is taken as the sphere that touches it below the start.
     struct Meeting {
         bool meets = false;
         double range_m = 0.0;
@@ -39,9 +43,17 @@ class Terrain {
     const Vector3& rise_M() const { return rise_M_; }
 
   private:
+    Meeting meet_grid(const Vector3& p_MoB_M, const Vector3& direction_M) const;
+    /// Metres from the target along `axis_M`, which is horizontal there.
+    double from_target_m(const Vector3& p_MoB_M, const Vector3& axis_M) const {
+        return landing_radius_m_ * p_MoB_M.dot(axis_M) / p_MoB_M.norm();
+    }
+
     double landing_radius_m_;
     double height_m_;
     Vector3 rise_M_;  ///< horizontal at the target, uphill; its length is the tangent of the slope
+    std::shared_ptr<const HeightGrid> grid_;
+    Vector3 east_M_, north_M_;  ///< at the target
 };
 
 }  // namespace aeolis::simulation

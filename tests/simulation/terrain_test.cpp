@@ -6,6 +6,8 @@
 #include "tests/support/gnc_venue.hpp"
 
 #include <cmath>
+#include <memory>
+#include <vector>
 
 namespace simulation_terrain_test {
 
@@ -91,6 +93,75 @@ TEST_CASE("a case has its own height and rise, of the scenario's deviations", "[
     }
     CHECK(std::sqrt(heights_m2 / 1000.0) == Approx(100.0).epsilon(0.07));
     CHECK(std::sqrt(rises2 / 1000.0) == Approx(std::sin(2.0 * degree_rad)).epsilon(0.07));
+}
+
+namespace {
+
+/// Hills of 60 m with 400 m from top to top, steep to one side, over 6 km around the target.
+std::shared_ptr<const HeightGrid> hills() {
+    constexpr std::size_t nodes = 241;
+    constexpr double cell_m = 25.0, half_m = 0.5 * cell_m * (nodes - 1);
+    std::vector<double> heights_m;
+    for (std::size_t row = 0; row < nodes; ++row)
+        for (std::size_t column = 0; column < nodes; ++column) {
+            const double x = cell_m * static_cast<double>(column), y = cell_m * static_cast<double>(row);
+            heights_m.push_back(30.0 * std::sin(x / 64.0) * std::cos(y / 90.0) + 0.02 * x);
+        }
+    return std::make_shared<const HeightGrid>(HeightGrid::Shape{nodes, nodes, -half_m, -half_m, cell_m}, heights_m);
+}
+
+}  // namespace
+
+TEST_CASE("a ray meets the ground of a grid where it first comes to it, and nowhere before", "[simulation][terrain]") {
+    Scenario scenario = with_ground({-30.0, 2.0, 45.0});
+    scenario.ground.grid = hills();
+    const Terrain terrain = terrain_of(scenario);
+    int met = 0;
+    for (int i = 0; i < 200; ++i) {
+        const Vector3 p = over_target(scenario, 100.0 + 10.0 * i, 9.0 * i - 900.0, 700.0 - 11.0 * i);
+        const Horizon at = horizon(p);
+        const double off_rad = (i % 60) * degree_rad, turn_rad = 0.7 * i;
+        const Vector3 direction = -std::cos(off_rad) * at.up +
+                                  std::sin(off_rad) * (std::sin(turn_rad) * at.east + std::cos(turn_rad) * at.north);
+        const auto meeting = terrain.meet(p, direction);
+        if (!meeting.meets) continue;
+        ++met;
+        CHECK(std::abs(terrain.height_m(p + meeting.range_m * direction)) < 0.02);
+        CHECK(meeting.incidence_cosine == Approx(-direction.dot(terrain.normal(p + meeting.range_m * direction))));
+        for (double range_m = 0.0; range_m < meeting.range_m - 1.0; range_m += 2.0)
+            REQUIRE(terrain.height_m(p + range_m * direction) > 0.0);
+    }
+    CHECK(met == 200);
+    const Vector3 over = over_target(scenario, 500.0);
+    CHECK_FALSE(terrain.meet(over, over.normalized()).meets);
+}
+
+TEST_CASE("the normal of a grid's ground is across the slope that its heights have", "[simulation][terrain]") {
+    Scenario scenario = with_ground({});
+    scenario.ground.grid = hills();
+    const Terrain terrain = terrain_of(scenario);
+    const Vector3 p = over_target(scenario, 50.0, 40.0, -60.0);
+    const Horizon at = horizon(p);
+    constexpr double step_m = 0.5;
+    const double rise_east =
+        (terrain.radius_m(p + step_m * at.east) - terrain.radius_m(p - step_m * at.east)) / (2.0 * step_m);
+    const double rise_north =
+        (terrain.radius_m(p + step_m * at.north) - terrain.radius_m(p - step_m * at.north)) / (2.0 * step_m);
+    const Vector3 expected = (at.up - rise_east * at.east - rise_north * at.north).normalized();
+    CHECK(terrain.normal(p).dot(expected) == Approx(1.0).margin(1e-5));
+}
+
+TEST_CASE("GNC lands softly on the hills of a grid, at the height that the grid has there",
+          "[simulation][terrain][gnc]") {
+    Scenario scenario = with_ground({});
+    scenario.ground.grid = hills();
+    tests::GncVenue venue(scenario, 1);
+    venue.run();
+    REQUIRE(venue.world().outcome() == Outcome::touchdown);
+    const auto& touchdown = venue.world().touchdown();
+    REQUIRE(touchdown);
+    CHECK(touchdown->vertical_mps == Approx(0.75).margin(0.15));
+    CHECK(touchdown->horizontal_mps <= 0.5);
 }
 
 TEST_CASE("GNC lands softly on ground that is higher, lower or tilted: the radar tells it",
