@@ -43,7 +43,7 @@ struct Load {
     /// After a restart: the last cycle whose state the other computer can have received.
     std::optional<Sclk> told_until;
     std::uint32_t resets = 0;  ///< so far
-    // NOLINTBEGIN(readability-magic-numbers): the vehicle of 2012, until a scenario gives its own
+    // NOLINTBEGIN(readability-magic-numbers): the vehicle of 2012, unless a scenario gives its own
     double uhf_rate_bps = 8000.0;         ///< rate of the real-time link
     Plan telemetry_plan = Plan::mission;  ///< wideband: a synthetic load for benchmarks
     double entry_mass_kg = 3153.0;
@@ -56,6 +56,7 @@ struct Load {
     double engine_isp_s = 210.0;
     double divert_m = 304.0;
     double divert_azimuth_deg = 112.0;
+    double gravity_fraction = 0.0;  ///< by which gravity is taken for stronger near the ground than `gnc::gravity`
     // NOLINTEND(readability-magic-numbers)
     EntryReference entry_reference;
     Parameters parameters;  ///< until ground changes them

@@ -27,13 +27,13 @@ Vector3 lift_direction(const Vector3& p, const Vector3& v, double bank_rad) {
 
 EntryFlight::EntryFlight(const Scenario& scenario)
     : atmosphere_(scenario.density_scale, scenario.air), landing_radius_m_(scenario.target.radius_m),
-      mass_kg_(scenario.masses.entry_kg) {}
+      mass_kg_(scenario.masses.entry_kg), aero_scale_(scenario.aero_scale) {}
 
 Sensed EntryFlight::sensed(const PointMass& at) const {
     const Air air = atmosphere_.at(altitude_m(at));
     const double speed_mps = at.v_MB_M.norm();
     const double mach = speed_mps / air.speed_of_sound_mps;
-    const AeroCoefficients coefficients = aeroshell_coefficients(mach, trim_angle_rad(mach));
+    const AeroCoefficients coefficients = scaled(aeroshell_coefficients(mach, trim_angle_rad(mach)), aero_scale_, mach);
     const double scale_mps2 = 0.5 * air.density_kgm3 * speed_mps * speed_mps * aeroshell_area_m2 / mass_kg_;
     return {coefficients.drag * scale_mps2, coefficients.lift * scale_mps2, mach};
 }

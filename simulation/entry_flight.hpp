@@ -33,6 +33,7 @@ class EntryFlight {
     Atmosphere atmosphere_;
     double landing_radius_m_;
     double mass_kg_;
+    std::vector<AeroScale> aero_scale_;
 };
 
 /// Unit vector of lift for a velocity through the air and a bank angle about it; `p_MoB_M` gives the upward direction.

@@ -94,7 +94,7 @@ double range_after_entry_m(const Scenario& scenario, const Atmosphere& atmospher
             const double v_mps = v.norm();
             const double mach = v_mps / air.speed_of_sound_mps;
             const double trim_rad = trim_angle_rad(mach) + straight * (balanced_trim_angle_rad - trim_angle_rad(mach));
-            const AeroCoefficients aero = aeroshell_coefficients(mach, trim_rad);
+            const AeroCoefficients aero = scaled(aeroshell_coefficients(mach, trim_rad), scenario.aero_scale, mach);
             const double pressure_by_mass = 0.5 * air.density_kgm3 * v_mps * v_mps / mass_kg;
             const bool open = since_mortar_s > line_stretch_s;
             if (!open)
@@ -104,7 +104,7 @@ double range_after_entry_m(const Scenario& scenario, const Atmosphere& atmospher
                 scenario.parachute_drag_area_m2 * parachute_inflation(since_mortar_s) * parachute_mach_factor(mach);
             const Vector3 forward = v.normalized();
             const Vector3 lift = parachute_lift_direction(forward, right_M, since_mortar_s);
-            return pressure_by_mass * area_m2 * (parachute_lift_to_drag * lift - forward);
+            return pressure_by_mass * area_m2 * (scenario.parachute_lift_to_drag * lift - forward);
         };
         const PointMass next = runge_kutta_step(at, descent_step_s, force);
         ground_m += ground_step_m(at, next, scenario.target.radius_m);
@@ -113,9 +113,8 @@ double range_after_entry_m(const Scenario& scenario, const Atmosphere& atmospher
     }
     const Horizon local = horizon(at.p_MoB_M);
     const double level_mps = (at.v_MB_M - at.v_MB_M.dot(local.up) * local.up).norm();
-    const flight::Load load;
     return ground_m + level_mps * EntryPlan::free_fall_s +
-           load.divert_m * std::cos(load.divert_azimuth_deg * degree_rad - azimuth_rad(at));
+           scenario.guidance.divert_m * std::cos(scenario.guidance.divert_azimuth_deg * degree_rad - azimuth_rad(at));
 }
 
 /// Derivatives of range_after_entry_m by the state at the start of SUFR.

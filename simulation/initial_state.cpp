@@ -57,6 +57,12 @@ InitialState state_before_entry(const Scenario& scenario, double before_entry_s,
     PointMass believed = entry;
     believed.p_MoB_M += scenario.dispersions.knowledge_position_m * by_axis * vector3(knowledge.normal3());
     believed.v_MB_M += scenario.dispersions.knowledge_velocity_mps * by_axis * vector3(knowledge.normal3());
+    if (scenario.believed) {
+        const Horizon local = horizon(entry.p_MoB_M);
+        believed.p_MoB_M += scenario.believed->position_east_m * local.east +
+                            scenario.believed->position_north_m * local.north +
+                            scenario.believed->position_up_m * local.up;
+    }
     add_axes(initial.draws, "knowledge_position", "m", believed.p_MoB_M - entry.p_MoB_M);
     add_axes(initial.draws, "knowledge_velocity", "mps", believed.v_MB_M - entry.v_MB_M);
     const PointMass at_start = coast(believed, -before_entry_s);

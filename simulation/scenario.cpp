@@ -106,6 +106,16 @@ std::vector<Bounded> bounded_fields(const Scenario& s) {
         {"ground.slope_deg", s.ground.slope_deg, 0.0, 20.0},
         {"ground.uphill_azimuth_deg", s.ground.uphill_azimuth_deg, -180.0, 360.0},
         {"parachute_drag_area_m2", s.parachute_drag_area_m2, 1.0, 1000.0},
+        {"parachute_lift_to_drag", s.parachute_lift_to_drag, 0.0, 1.0},
+        {"wrist_damping_Nms", s.wrist_damping_Nms, 0.0, 20000.0},
+        {"engines.largest_thrust_N", s.engines.largest_thrust_N, 100.0, 50000.0},
+        {"engines.least_thrust_N", s.engines.least_thrust_N, 0.0, 0.9 * s.engines.largest_thrust_N},
+        {"engines.least_impulse_s", s.engines.least_impulse_s, 50.0, 500.0},
+        {"engines.most_impulse_s", s.engines.most_impulse_s, s.engines.least_impulse_s, 500.0},
+        {"guidance.divert_m", s.guidance.divert_m, 0.0, 2000.0},
+        {"guidance.divert_azimuth_deg", s.guidance.divert_azimuth_deg, -180.0, 360.0},
+        {"guidance.entry_lift_to_drag", s.guidance.entry_lift_to_drag, 0.01, 1.0},
+        {"guidance.engine_impulse_s", s.guidance.engine_impulse_s, 50.0, 500.0},
         {"steady_wind_east_mps", s.steady_wind_east_mps, -100.0, 100.0},
         {"steady_wind_north_mps", s.steady_wind_north_mps, -100.0, 100.0},
         {"radio.light_time_s", s.radio.light_time_s, 0.0, 1500.0},
@@ -141,6 +151,11 @@ void check_list_sizes(const Scenario& s, std::vector<std::string>& found) {
     at_most(scenario_rows_max, "radio.delivery_restarts_after_touchdown_s",
             s.radio.delivery_restarts_after_touchdown_s.size());
     at_most(scenario_rows_max, "density_scale", s.density_scale.size());
+    at_most(scenario_rows_max, "aero_scale", s.aero_scale.size());
+    if (s.believed) {
+        at_most(scenario_rows_max, "believed.density_scale", s.believed->density_scale.size());
+        at_most(scenario_rows_max, "believed.aero_scale", s.believed->aero_scale.size());
+    }
     at_most(scenario_rows_max, "air", s.air.size());
     at_most(scenario_rows_max, "winds", s.winds.size());
     at_most(scenario_rows_max, "commands", s.commands.size());
@@ -218,6 +233,20 @@ void check_air(const Scenario& s, std::vector<std::string>& found) {
     if (!s.air.empty() && (s.air.front().altitude_m > low_m || s.air.back().altitude_m < high_m))
         found.push_back("air: covers " + number(s.air.front().altitude_m) + " … " + number(s.air.back().altitude_m) +
                         " m above the landing radius, an entry needs " + number(low_m) + " … " + number(high_m));
+}
+
+void check_aero_scale(const std::vector<AeroScale>& rows, std::vector<std::string>& found) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const std::string name = "aero_scale[" + std::to_string(i) + "].";
+        for (const auto& [field, value, least, most] : {std::tuple{"mach", rows[i].mach, 0.0, 100.0},
+                                                        {"drag", rows[i].drag, 0.5, 2.0},
+                                                        {"lift", rows[i].lift, 0.1, 3.0}})
+            if (!(value >= least && value <= most))
+                found.push_back(name + field + ": " + number(value) + " is outside " + number(least) + " … " +
+                                number(most));
+        if (i > 0 && !(rows[i].mach > rows[i - 1].mach))
+            found.push_back(name + "mach: " + number(rows[i].mach) + " does not lie above the one before");
+    }
 }
 
 void check_grid(const Scenario& s, std::vector<std::string>& found) {
@@ -434,6 +463,19 @@ Scenario undispersed(Scenario scenario) {
     return scenario;
 }
 
+Scenario as_believed(Scenario scenario) {
+    if (!scenario.believed) return scenario;
+    const Belief& belief = *scenario.believed;
+    scenario.masses = belief.masses;
+    scenario.density_scale = belief.density_scale;
+    scenario.aero_scale = belief.aero_scale;
+    scenario.parachute_drag_area_m2 = belief.parachute_drag_area_m2;
+    scenario.steady_wind_east_mps = belief.steady_wind_east_mps;
+    scenario.steady_wind_north_mps = belief.steady_wind_north_mps;
+    scenario.believed.reset();
+    return scenario;
+}
+
 double course_at_target_deg(const Scenario& s) {
     const Vector3 entry = place(s.entry.latitude_deg * degree_rad, s.entry.longitude_deg * degree_rad, 1.0);
     const Horizon local = horizon(place(s.target.latitude_deg * degree_rad, s.target.longitude_deg * degree_rad, 1.0));
@@ -455,6 +497,34 @@ void check_target_range(const Scenario& s, std::vector<std::string>& found) {
     if (!(range_km >= least_km && range_km <= most_km))
         found.push_back("target: out of range: " + number(std::round(range_km)) + " km from entry is outside " +
                         number(least_km) + " … " + number(most_km) + " km");
+}
+
+// What is believed has the bounds of what is so.
+void check_belief(const Scenario& scenario, std::vector<std::string>& found) {
+    if (!scenario.believed) return;
+    const Scenario world = as_believed(scenario);
+    std::vector<std::string> wrong;
+    for (const Bounded& field : bounded_fields(world))
+        if (!(field.value >= field.least && field.value <= field.most))
+            wrong.push_back(std::string(field.name) + ": " + number(field.value) + " is outside " +
+                            number(field.least) + " … " + number(field.most));
+    check_masses(world.masses, wrong);
+    check_density_scale(world.density_scale, wrong);
+    check_aero_scale(world.aero_scale, wrong);
+    const Belief& belief = *scenario.believed;
+    for (const auto& [field, value, most] : {std::tuple{"gravity_fraction", belief.gravity_fraction, 0.01},
+                                             {"position_east_m", belief.position_east_m, 50000.0},
+                                             {"position_north_m", belief.position_north_m, 50000.0},
+                                             {"position_up_m", belief.position_up_m, 10000.0},
+                                             {"attitude_x_deg", belief.attitude_x_deg, 5.0},
+                                             {"attitude_y_deg", belief.attitude_y_deg, 5.0},
+                                             {"attitude_z_deg", belief.attitude_z_deg, 5.0}})
+        if (!(std::abs(value) <= most))
+            wrong.push_back(std::string(field) + ": " + number(value) + " is outside " + number(-most) + " … " +
+                            number(most));
+    // What is wrong with the truth as well is told of the truth.
+    for (const std::string& one : wrong)
+        if (std::ranges::find(found, one) == found.end()) found.push_back("believed." + one);
 }
 
 std::vector<std::string> impossible_values(const Scenario& scenario) {
@@ -482,6 +552,8 @@ std::vector<std::string> impossible_values(const Scenario& scenario) {
     check_tracking_passes(scenario.radio.tracking_passes, found);
     check_tone_outages(scenario.radio.tone_outages, found);
     check_density_scale(scenario.density_scale, found);
+    check_aero_scale(scenario.aero_scale, found);
+    check_belief(scenario, found);
     check_grid(scenario, found);
     check_air(scenario, found);
     check_dispersion_moment(scenario, found);

@@ -114,6 +114,30 @@ struct Ground {
     std::shared_ptr<const HeightGrid> grid{};  ///< adds its heights to the plane; none: there is the plane alone
 };
 
+/// The descent engines, all alike. Specific impulse goes evenly from least to largest thrust. [facts]
+struct EngineDesign {
+    double largest_thrust_N = 3603.0;
+    double least_thrust_N = 31.0;
+    double least_impulse_s = 204.0;  ///< at least thrust
+    double most_impulse_s = 223.0;   ///< at largest thrust
+};
+
+/// What guidance on board goes by, beside the parameters that ground may change.
+struct Guidance {
+    double divert_m = 304.0;  ///< the sidestep after backshell separation. [facts]
+    double divert_azimuth_deg = 112.0;
+    double entry_lift_to_drag = 0.24;  ///< until the forces that are felt tell it
+    double engine_impulse_s = 210.0;   ///< by which propellant is counted
+};
+
+/// Drag and lift of the entry vehicle by those of the published table, by Mach number: linear between rows, held
+/// outside them.
+struct AeroScale {
+    double mach = 0.0;
+    double drag = 1.0;
+    double lift = 1.0;
+};
+
 /// Atmosphere scale by height above the landing radius: density = table × scale.
 struct DensityScale {
     double altitude_m = 0.0;
@@ -283,6 +307,22 @@ enum class TestVenue : std::uint8_t {
 /// "flight_software", …
 const char* name_of(TestVenue venue);
 
+/// What guidance and navigators take for true. The scenario is the truth, the start is the same in both.
+struct Belief {
+    Masses masses;
+    std::vector<DensityScale> density_scale;
+    std::vector<AeroScale> aero_scale;
+    double parachute_drag_area_m2 = 0.0;
+    double steady_wind_east_mps = 0.0;
+    double steady_wind_north_mps = 0.0;
+    /// Gravity near the ground is taken for so much stronger; the excess fades to none 100 km up. Of the vehicle alone.
+    double gravity_fraction = 0.0;
+    /// Ground's solution less the truth, at entry. Added to what a case draws.
+    double position_east_m = 0.0, position_north_m = 0.0, position_up_m = 0.0;
+    /// Rotation vector in B from the true attitude to that of cruise. Added to what a case draws.
+    double attitude_x_deg = 0.0, attitude_y_deg = 0.0, attitude_z_deg = 0.0;
+};
+
 struct Scenario {
     std::string name;
     std::string title;             ///< one line, for people
@@ -305,8 +345,14 @@ struct Scenario {
     std::vector<AirRow> air;                ///< none: Gale's, simulation/mars/atmosphere.cpp
     std::vector<WindRow> winds;             ///< beside the steady wind
     double parachute_drag_area_m2 = 205.0;  ///< CD·S at terminal speed
+    double parachute_lift_to_drag = 0.17;  ///< its trim angle makes it lift. [od137] 0.15 at opening, 0.13 … 0.21 later
+    double wrist_damping_Nms = 900.0;      ///< of the swing below the bridles' confluence. Our assumption
     double steady_wind_east_mps = 0.0;
     double steady_wind_north_mps = 0.0;
+    std::vector<AeroScale> aero_scale;
+    EngineDesign engines;
+    Guidance guidance;
+    std::optional<Belief> believed;  ///< none: all is known as it is
     Radio radio;
     /// Ground keeps a flight of its own beside a run. None: the rehearsal chooses by its pace; elsewhere there is none.
     std::optional<bool> ground_flight;
@@ -337,6 +383,9 @@ inline constexpr std::size_t scenario_rows_max = 256;  ///< of any other list
 bool disperses_later(const Scenario& scenario);
 /// The scenario with every seeded error of `dispersions` switched off.
 Scenario undispersed(Scenario scenario);
+/// The scenario with what is believed in place of the truth: the world that guidance is designed for, and in which
+/// ground flies along. Position, attitude and gravity stay true.
+Scenario as_believed(Scenario scenario);
 
 /// Azimuth of the course from entry to the target, at the target, from north to east, 0 … 360.
 double course_at_target_deg(const Scenario& scenario);

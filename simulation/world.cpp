@@ -93,7 +93,7 @@ struct World::State {
           buses(s, seed, case_number),
           imus{imu(s, seed, case_number, flight::Unit::a), imu(s, seed, case_number, flight::Unit::b)},
           radars{radar(s, seed, case_number, flight::Unit::a), radar(s, seed, case_number, flight::Unit::b)},
-          star_scanner(s.dispersions, Random{seed, case_number, Stream::star_scanner}),
+          star_scanner(s, Random{seed, case_number, Stream::star_scanner}),
           rover_imu(s.dispersions, Random{seed, case_number, Stream::rover_imu}) {
         events.reserve(8);
     }
@@ -347,15 +347,18 @@ World::~World() = default;
 flight::NavigationShift World::disperse(std::uint64_t seed, std::uint64_t case_number) {
     State& s = *state_;
     const double before_entry_s = s.scenario.entry_sclk - s.sclk();
-    const PointMass nominal = state_before_entry(undispersed(s.scenario), before_entry_s, seed, 0).truth;
+    const auto solved = [](const InitialState& at) {
+        return PointMass{vector3(at.solution.p_MoB_M_m), vector3(at.solution.v_MB_M_mps)};
+    };
+    const InitialState nominal = state_before_entry(undispersed(s.scenario), before_entry_s, seed, 0);
     const InitialState drawn = state_before_entry(s.scenario, before_entry_s, seed, case_number);
     const auto shift = [](const PointMass& to, const PointMass& from) {
         return PointMass{to.p_MoB_M - from.p_MoB_M, to.v_MB_M - from.v_MB_M};
     };
     // Keeps the flight's departure from free fall so far.
-    const PointMass flown = shift(s.vehicle.at(), nominal);
-    const PointMass believed{vector3(drawn.solution.p_MoB_M_m), vector3(drawn.solution.v_MB_M_mps)};
-    const PointMass learnt = shift(believed, nominal);
+    const PointMass flown = shift(s.vehicle.at(), nominal.truth);
+    const PointMass believed = solved(drawn);
+    const PointMass learnt = shift(believed, solved(nominal));
     s.vehicle.disperse(s.scenario, {drawn.truth.p_MoB_M + flown.p_MoB_M, drawn.truth.v_MB_M + flown.v_MB_M}, seed,
                        case_number);
     s.initial.solution = drawn.solution;
@@ -368,10 +371,11 @@ flight::NavigationShift World::disperse(std::uint64_t seed, std::uint64_t case_n
     s.imus[1].disperse(errors, {seed, case_number, Stream::imu_b}, {seed, case_number, Stream::imu_b_mounting});
     s.radars = {radar(s.scenario, seed, case_number, flight::Unit::a),
                 radar(s.scenario, seed, case_number, flight::Unit::b)};
-    s.star_scanner = {errors, {seed, case_number, Stream::star_scanner}};
+    const Quaternion error_before = s.star_scanner.error();
+    s.star_scanner = {s.scenario, {seed, case_number, Stream::star_scanner}};
     s.rover_imu = {errors, {seed, case_number, Stream::rover_imu}};
     s.buses.disperse(seed, case_number);
-    return {array3(learnt.p_MoB_M), array3(learnt.v_MB_M), array4(s.star_scanner.error()),
+    return {array3(learnt.p_MoB_M), array3(learnt.v_MB_M), array4(error_before.conjugate() * s.star_scanner.error()),
             array3(s.imus[static_cast<std::size_t>(s.imu_unit)].accelerometer_bias_mps2())};
 }
 

@@ -66,7 +66,8 @@ void Configuration::forget(Fact fact) {
 }
 
 EdlGnc::EdlGnc(const Load& load)
-    : load_(load), mass_kg_(load.powered_descent_mass_kg), steering_(load.engine_max_thrust_N) {
+    : load_(load), strapdown_(load.gravity_fraction), mass_kg_(load.powered_descent_mass_kg),
+      steering_(load.engine_max_thrust_N) {
     lateral_.start(1);
 }
 
@@ -179,6 +180,7 @@ void EdlGnc::measure(Sclk now) {
     m.descent_rate_mps = -climb_mps;
     m.level_velocity_M = state.v_MB_M - climb_mps * m.up_M;
     m.free_M_mps2 = free_acceleration(state.p_MoB_M, state.v_MB_M);
+    if (load_.gravity_fraction != 0.0) m.free_M_mps2 += local_gravity(state.p_MoB_M, load_.gravity_fraction);
     const Vector3 ahead = state.v_MB_M / std::max(m.speed_mps, 1.0e-3);
     force_filter_.on(parameters(), state.q_MB * strapdown_.specific_force_B_mps2(), ahead, cycle_s);
     m.deceleration_mps2 = force_filter_.drag_mps2() - m.free_M_mps2.dot(ahead);

@@ -27,6 +27,12 @@ Vector3 free_acceleration(const Vector3& p_MoB_M, const Vector3& v_MB_M) {
     return a;
 }
 
+Vector3 local_gravity(const Vector3& p_MoB_M, double fraction) {
+    constexpr double ends_m = 100'000.0;  // our assumption
+    const double part = 1.0 - (p_MoB_M.norm() - mars_equator_radius_m) / ends_m;
+    return fraction * std::clamp(part, 0.0, 1.0) * gravity(p_MoB_M);
+}
+
 void fall(Vector3& p_MoB_M, Vector3& v_MB_M, double dt_s) {
     const Vector3 p = p_MoB_M, v = v_MB_M;
     const Vector3 a1 = free_acceleration(p, v);

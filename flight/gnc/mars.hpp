@@ -27,6 +27,12 @@ Vector3 gravity(const Vector3& p_MoB_M);
 /// @return         [m/s²] 3×1, in M.
 Vector3 free_acceleration(const Vector3& p_MoB_M, const Vector3& v_MB_M);
 
+/// By how much a vehicle takes gravity for stronger than `gravity`: that fraction of it on the ground, fading evenly to
+/// none 100 km above the equator's radius, as a local departure does.
+///
+/// @param p_MoB_M  [m] 3×1 in M.   @return  [m/s²] 3×1, in M.
+Vector3 local_gravity(const Vector3& p_MoB_M, double fraction);
+
 /// Moves a vehicle that feels no force by one Runge-Kutta step of fourth order.
 ///
 /// @param p_MoB_M  [m] 3×1 in M.   @param v_MB_M  [m/s] 3×1, relative to rotating Mars, in M.

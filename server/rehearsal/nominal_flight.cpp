@@ -166,7 +166,7 @@ std::optional<NominalFlight::Ellipse> ellipse_of(const simulation::Scenario& sce
 }
 
 simulation::Scenario expected_scenario(simulation::Scenario scenario) {
-    scenario = simulation::undispersed(std::move(scenario));
+    scenario = simulation::as_believed(simulation::undispersed(std::move(scenario)));
     scenario.name.clear();
     scenario.title.clear();
     scenario.disperse_before_entry_s.reset();

@@ -31,7 +31,7 @@ struct DopplerRows {
 }  // namespace
 
 PredictedFlight predicted_flight(const simulation::Scenario& scenario, const MfskWaveform& waveform) {
-    simulation::Scenario expected = simulation::undispersed(scenario);
+    simulation::Scenario expected = simulation::as_believed(simulation::undispersed(scenario));
     expected.disperse_before_entry_s.reset();
     expected.test_venue = simulation::TestVenue::gnc_alone;
     expected.radio = {};

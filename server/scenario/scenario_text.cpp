@@ -50,6 +50,30 @@ const Bindings<simulation::Ground> ground_fields = {
     AEOLIS_BIND(Ground, slope_deg),
     AEOLIS_BIND(Ground, uphill_azimuth_deg),
 };
+const Bindings<simulation::EngineDesign> engine_fields = {
+    AEOLIS_BIND(EngineDesign, largest_thrust_N),
+    AEOLIS_BIND(EngineDesign, least_thrust_N),
+    AEOLIS_BIND(EngineDesign, least_impulse_s),
+    AEOLIS_BIND(EngineDesign, most_impulse_s),
+};
+const Bindings<simulation::Guidance> guidance_fields = {
+    AEOLIS_BIND(Guidance, divert_m),
+    AEOLIS_BIND(Guidance, divert_azimuth_deg),
+    AEOLIS_BIND(Guidance, entry_lift_to_drag),
+    AEOLIS_BIND(Guidance, engine_impulse_s),
+};
+const Bindings<simulation::AeroScale> aero_fields = {
+    AEOLIS_BIND(AeroScale, mach),
+    AEOLIS_BIND(AeroScale, drag),
+    AEOLIS_BIND(AeroScale, lift),
+};
+const Bindings<simulation::Belief> belief_fields = {
+    AEOLIS_BIND(Belief, parachute_drag_area_m2), AEOLIS_BIND(Belief, steady_wind_east_mps),
+    AEOLIS_BIND(Belief, steady_wind_north_mps),  AEOLIS_BIND(Belief, gravity_fraction),
+    AEOLIS_BIND(Belief, position_east_m),        AEOLIS_BIND(Belief, position_north_m),
+    AEOLIS_BIND(Belief, position_up_m),          AEOLIS_BIND(Belief, attitude_x_deg),
+    AEOLIS_BIND(Belief, attitude_y_deg),         AEOLIS_BIND(Belief, attitude_z_deg),
+};
 const Bindings<simulation::Masses> mass_fields = {
     AEOLIS_BIND(Masses, cruise_stage_kg),    AEOLIS_BIND(Masses, cruise_balance_each_kg),
     AEOLIS_BIND(Masses, entry_kg),           AEOLIS_BIND(Masses, entry_balance_each_kg),
@@ -131,7 +155,8 @@ const Bindings<Scenario> scenario_fields = {
     AEOLIS_BIND(Scenario, start_before_entry_s),       AEOLIS_BIND(Scenario, end_after_touchdown_s),
     AEOLIS_BIND(Scenario, timeout_after_entry_s),      AEOLIS_BIND(Scenario, parachute_drag_area_m2),
     AEOLIS_BIND(Scenario, steady_wind_east_mps),       AEOLIS_BIND(Scenario, steady_wind_north_mps),
-    AEOLIS_BIND(Scenario, bus_message_error_fraction),
+    AEOLIS_BIND(Scenario, bus_message_error_fraction), AEOLIS_BIND(Scenario, parachute_lift_to_drag),
+    AEOLIS_BIND(Scenario, wrist_damping_Nms),
 };
 const Bindings<Scenario> trigger_fields = {
     AEOLIS_BIND(Scenario, parachute_speed_mps),
@@ -387,6 +412,30 @@ void write_links(const simulation::Radio& radio, v1::Radio& message) {
         message.add_delivery_restarts_after_touchdown_s(restart);
 }
 
+/// What is believed begins as the truth.
+simulation::Belief belief_of(const v1::Belief& message, const Scenario& truth) {
+    simulation::Belief belief{truth.masses,
+                              truth.density_scale,
+                              truth.aero_scale,
+                              truth.parachute_drag_area_m2,
+                              truth.steady_wind_east_mps,
+                              truth.steady_wind_north_mps};
+    read(message.masses(), mass_fields, belief.masses);
+    if (message.density_scale_size() > 0) belief.density_scale.clear();
+    for (const auto& row : message.density_scale()) read(row, density_fields, belief.density_scale.emplace_back());
+    if (message.aero_scale_size() > 0) belief.aero_scale.clear();
+    for (const auto& row : message.aero_scale()) read(row, aero_fields, belief.aero_scale.emplace_back());
+    read(message, belief_fields, belief);
+    return belief;
+}
+
+void write_belief(const simulation::Belief& belief, v1::Belief& message) {
+    write(belief.masses, mass_fields, *message.mutable_masses());
+    for (const auto& row : belief.density_scale) write(row, density_fields, *message.add_density_scale());
+    for (const auto& row : belief.aero_scale) write(row, aero_fields, *message.add_aero_scale());
+    write(belief, belief_fields, message);
+}
+
 }  // namespace
 
 Result<Scenario> scenario_from_message(const v1::Scenario& message) {
@@ -431,13 +480,13 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
     read(message.limits(), limit_fields, scenario.limits);
     read_links(message.radio(), scenario.radio);
     read(message.triggers(), trigger_fields, scenario);
-    for (const auto& row : message.density_scale()) {
-        simulation::DensityScale scale;
-        read(row, density_fields, scale);
-        scenario.density_scale.push_back(scale);
-    }
+    read(message.engines(), engine_fields, scenario.engines);
+    read(message.guidance(), guidance_fields, scenario.guidance);
+    for (const auto& row : message.density_scale()) read(row, density_fields, scenario.density_scale.emplace_back());
+    for (const auto& row : message.aero_scale()) read(row, aero_fields, scenario.aero_scale.emplace_back());
     for (const auto& row : message.air()) read(row, air_fields, scenario.air.emplace_back());
     for (const auto& row : message.winds()) read(row, wind_fields, scenario.winds.emplace_back());
+    if (message.has_believed()) scenario.believed = belief_of(message.believed(), scenario);
     if (message.has_ground_flight()) scenario.ground_flight = message.ground_flight();
     if (message.test_venue() != v1::TEST_VENUE_UNSPECIFIED) {
         const auto venue = named<simulation::TestVenue>(message.test_venue(),
@@ -515,6 +564,10 @@ v1::Scenario scenario_to_message(const Scenario& scenario) {
     write_links(scenario.radio, *message.mutable_radio());
     write(scenario, trigger_fields, *message.mutable_triggers());
     for (const auto& scale : scenario.density_scale) write(scale, density_fields, *message.add_density_scale());
+    write(scenario.engines, engine_fields, *message.mutable_engines());
+    write(scenario.guidance, guidance_fields, *message.mutable_guidance());
+    for (const auto& row : scenario.aero_scale) write(row, aero_fields, *message.add_aero_scale());
+    if (scenario.believed) write_belief(*scenario.believed, *message.mutable_believed());
     for (const auto& row : scenario.air) write(row, air_fields, *message.add_air());
     for (const auto& row : scenario.winds) write(row, wind_fields, *message.add_winds());
     if (scenario.ground_flight) message.set_ground_flight(*scenario.ground_flight);
@@ -584,12 +637,18 @@ Result<std::string> text_of(const std::filesystem::path& file) {
     return text;
 }
 
-/// Clears the base's lists that the file has too: a file's list replaces that of its base.
-void clear_lists_of(const v1::Scenario& message, v1::Scenario& base) {
+/// Clears the base's lists that the file has too, at any depth: a file's list replaces that of its base.
+void clear_lists_of(const Message& message, Message& base) {
+    const auto& reflection = *message.GetReflection();
     std::vector<const google::protobuf::FieldDescriptor*> fields;
-    message.GetReflection()->ListFields(message, &fields);
-    for (const auto* field : fields)
-        if (field->is_repeated()) base.GetReflection()->ClearField(&base, field);
+    reflection.ListFields(message, &fields);
+    for (const auto* field : fields) {
+        if (field->is_repeated())
+            base.GetReflection()->ClearField(&base, field);
+        else if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_MESSAGE &&
+                 base.GetReflection()->HasField(base, field))
+            clear_lists_of(reflection.GetMessage(message, field), *base.GetReflection()->MutableMessage(&base, field));
+    }
 }
 
 /// Replaces the name of a grid by its heights.

@@ -10,11 +10,12 @@ namespace aeolis::simulation {
 
 /// Cruise attitude determination: the attitude once a second while the cruise stage, which carries it, is attached.
 ///
-/// A case has one constant error, a small rotation in B with the scenario's deviation on each axis.
+/// A case has one constant error, a small rotation in B with the scenario's deviation on each axis, beside what the
+/// scenario says of it.
 class StarScanner {
   public:
-    StarScanner(const Dispersions& dispersions, Random random)
-        : error_(rotation(dispersions.attitude_rad * vector3(random.normal3()))) {}
+    StarScanner(const Scenario& scenario, Random random)
+        : error_(rotation(scenario.dispersions.attitude_rad * vector3(random.normal3()) + believed_rad(scenario))) {}
 
     flight::CruiseAttitude measure(const Quaternion& q_MB, Sclk now) const {
         const Quaternion measured = (q_MB * error_).normalized();
@@ -24,6 +25,12 @@ class StarScanner {
     const Quaternion& error() const { return error_; }
 
   private:
+    static Vector3 believed_rad(const Scenario& scenario) {
+        if (!scenario.believed) return Vector3::Zero();
+        const Belief& belief = *scenario.believed;
+        return degree_rad * Vector3{belief.attitude_x_deg, belief.attitude_y_deg, belief.attitude_z_deg};
+    }
+
     Quaternion error_;
 };
 

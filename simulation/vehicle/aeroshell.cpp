@@ -3,9 +3,11 @@
 
 #include "simulation/vectors.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 
 namespace aeolis::simulation {
 namespace {
@@ -30,6 +32,17 @@ constexpr std::array<TrimRow, 12> trim{{
 }};
 
 }  // namespace
+
+AeroCoefficients scaled(AeroCoefficients coefficients, std::span<const AeroScale> scale, double mach) {
+    if (scale.empty()) return coefficients;
+    const auto above = std::ranges::upper_bound(scale, mach, {}, &AeroScale::mach);
+    const AeroScale& high = above == scale.end() ? scale.back() : *above;
+    const AeroScale& low = above == scale.begin() ? high : *std::prev(above);
+    const double part = high.mach > low.mach ? (mach - low.mach) / (high.mach - low.mach) : 0.0;
+    coefficients.drag *= std::lerp(low.drag, high.drag, part);
+    coefficients.lift *= std::lerp(low.lift, high.lift, part);
+    return coefficients;
+}
 
 double trim_angle_rad(double mach) {
     if (mach <= trim.front().mach) return degree_rad * trim.front().angle_deg;

@@ -2,8 +2,14 @@
 #pragma once
 
 #include "common/aeroshell.hpp"
+#include "simulation/scenario.hpp"
+
+#include <span>
 
 namespace aeolis::simulation {
+
+/// The coefficients by the scenario's scale, if it has one.
+AeroCoefficients scaled(AeroCoefficients coefficients, std::span<const AeroScale> scale, double mach);
 
 /// The trim angle with all balance masses on, and the stiffness about it.
 struct Trim {

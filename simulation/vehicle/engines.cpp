@@ -13,8 +13,6 @@ constexpr double priming_s = 5.0;
 constexpr double ignition_delay_s = 0.15;
 constexpr double throttle_lag_s = 0.06;
 constexpr double shutdown_lag_s = 0.03;
-constexpr double least_impulse_s = 204.0;
-constexpr double most_impulse_s = 223.0;
 constexpr auto engine_mounts = flight::descent_engines();
 
 }  // namespace
@@ -32,6 +30,10 @@ void Engines::command(const flight::EngineCommand& command, double now_s) {
         throttle_[i] = std::isfinite(command.throttle[i]) ? std::clamp(command.throttle[i], 0.0, 1.0) : 0.0;
 }
 
+double Engines::asked_N(std::size_t engine) const {
+    return running_ ? std::max(design_.least_thrust_N, throttle_[engine] * design_.largest_thrust_N) : 0.0;
+}
+
 double Engines::advance(double now_s, double step_s, double propellant_left_kg) {
     running_ = ignited_ && valves_open_ && propellant_left_kg > 0.0 && now_s - valves_open_since_s_ >= priming_s &&
                now_s - ignition_s_ >= ignition_delay_s;
@@ -39,11 +41,12 @@ double Engines::advance(double now_s, double step_s, double propellant_left_kg) 
     const double kept = std::exp(-step_s / (running_ ? throttle_lag_s : shutdown_lag_s));
     double burnt_kg = 0.0;
     for (std::size_t i = 0; i < thrust_N_.size(); ++i) {
-        const double asked_N = running_ ? std::max(least_thrust_N, throttle_[i] * largest_thrust_N) : 0.0;
+        const double wanted_N = asked_N(i);
         const double before_N = thrust_N_[i];
-        thrust_N_[i] = asked_N + (before_N - asked_N) * kept;
+        thrust_N_[i] = wanted_N + (before_N - wanted_N) * kept;
         if (!running_ && thrust_N_[i] < 0.1) thrust_N_[i] = 0.0;
-        const double impulse_s = least_impulse_s + (most_impulse_s - least_impulse_s) * thrust_N_[i] / largest_thrust_N;
+        const double impulse_s = design_.least_impulse_s + (design_.most_impulse_s - design_.least_impulse_s) *
+                                                               thrust_N_[i] / design_.largest_thrust_N;
         burnt_kg += 0.5 * (before_N + thrust_N_[i]) * step_s / (impulse_s * standard_gravity_mps2);
     }
     sum_up();
@@ -63,12 +66,11 @@ void Engines::sum_up() {
 }
 
 void Engines::place(const flight::EngineCommand& placed, std::optional<double> valves_s) {
-    *this = {};
+    *this = Engines{design_};
     if (valves_s) open_valves(*valves_s);
     command(placed, 0.0);  // engines that are ignited have run for long
     running_ = ignited_ && valves_open_;
-    for (std::size_t i = 0; i < thrust_N_.size(); ++i)
-        thrust_N_[i] = running_ ? std::max(least_thrust_N, throttle_[i] * largest_thrust_N) : 0.0;
+    for (std::size_t i = 0; i < thrust_N_.size(); ++i) thrust_N_[i] = asked_N(i);
     sum_up();
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "flight/devices/device_messages.hpp"
+#include "simulation/scenario.hpp"
 #include "simulation/vectors.hpp"
 
 #include <array>
@@ -11,13 +12,12 @@ namespace aeolis::simulation {
 
 /// Eight throttled descent engines, each with its own thrust, mounted as in flight/devices/effectors.hpp.
 ///
-/// 31 … 3603 N each, specific impulse 204 s at least thrust to 223 s at most. [facts]
+/// Thrust and specific impulse are the scenario's.
 /// Our assumptions: they ignite 0.15 s after the command, and only when the valves have been open for 5 s (priming);
 /// thrust follows the throttle with a time constant of 0.06 s and decays with one of 0.03 s.
 class Engines {
   public:
-    static constexpr double largest_thrust_N = 3603.0;
-    static constexpr double least_thrust_N = 31.0;
+    explicit Engines(const EngineDesign& design = {}) : design_(design) {}
 
     void open_valves(double now_s);
     bool valves_open() const { return valves_open_; }
@@ -39,7 +39,9 @@ class Engines {
 
   private:
     void sum_up();
+    double asked_N(std::size_t engine) const;
 
+    EngineDesign design_;
     bool valves_open_ = false;
     double valves_open_since_s_ = 0.0;
     bool ignited_ = false;

@@ -20,13 +20,6 @@ double parachute_inflation(double since_mortar_s);
 /// Station of the bridles' confluence, where the riser pulls, along z from the descent stage's centre of mass. About 2
 /// m behind the centre of mass of everything below it. Our assumption.
 inline constexpr double riser_station_m = -1.9;
-/// Damping of the vehicle's swing below the confluence (wrist mode) by friction in bridles and risers. [N m s] Our
-/// assumption.
-inline constexpr double wrist_damping_Nms = 900.0;
-
-/// The parachute trims at an angle to the wind and so also lifts. The published trajectory shows 0.15 at opening, 0.13
-/// … 0.21 later [od137].
-inline constexpr double parachute_lift_to_drag = 0.17;
 /// Horizontal unit vector to the right of the flight; south for a vertical fall.
 Vector3 level_right(const Vector3& p_MoB_M, const Vector3& v_MB_M);
 /// Unit vector of the parachute's lift, normal to `forward`.

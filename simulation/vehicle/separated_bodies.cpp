@@ -49,9 +49,9 @@ void SeparatedBody::fly(double step_s, const Atmosphere& atmosphere, const Wind&
         const Vector3 forward = through_air / speed_mps;
         Vector3 pull = -forward;
         if (lift_)
-            pull += parachute_lift_to_drag *
-                    parachute_lift_direction(forward, lift_->right_at_mortar_M,
-                                             lift_->since_mortar_s + start_s + fraction * step_s, lift_->from_up_rad);
+            pull += lift_->by_drag * parachute_lift_direction(forward, lift_->right_at_mortar_M,
+                                                              lift_->since_mortar_s + start_s + fraction * step_s,
+                                                              lift_->from_up_rad);
         return (0.5 * atmosphere.at(altitude_m).density_kgm3 * drag_area_m2_ / mass_kg_ * speed_mps * speed_mps) * pull;
     });
     if (terrain.height_m(at_.p_MoB_M) > 0.0) return;

@@ -17,6 +17,7 @@ struct ParachuteLift {
     Vector3 right_at_mortar_M = Vector3::UnitZ();
     double since_mortar_s = 0.0;  ///< at the release
     double from_up_rad = 0.0;
+    double by_drag = 0.0;  ///< lift over drag
 };
 
 /// A jettisoned body: a point with drag in the vehicle's air and wind, until it lies on the ground. Below its parachute

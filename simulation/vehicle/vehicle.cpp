@@ -31,6 +31,8 @@ Vehicle::Vehicle(const Scenario& scenario, const PointMass& start, const Quatern
                                                                      Random{seed, case_number, Stream::parachute})),
       parachute_plane_rad_(scenario.dispersions.parachute_plane_deg * degree_rad *
                            Random{seed, case_number, Stream::swing}.normal()),
+      parachute_lift_to_drag_(scenario.parachute_lift_to_drag), wrist_damping_Nms_(scenario.wrist_damping_Nms),
+      aero_scale_(scenario.aero_scale),
       aeroshell_factors_{
           dispersed(scenario.dispersions.drag_fraction, Random{seed, case_number, Stream::drag}),
           dispersed(scenario.dispersions.slow_drag_fraction, Random{seed, case_number, Stream::slow_drag})},
@@ -41,7 +43,7 @@ Vehicle::Vehicle(const Scenario& scenario, const PointMass& start, const Quatern
             Gusts{scenario.dispersions.gust_mps, Random{seed, case_number, Stream::gust}}, scenario.winds),
       body_{start.p_MoB_M, start.v_MB_M, q_MB, {0.0, 0.0, spin_rps}}, q_MRover_(q_MB), configuration_(scenario),
       thrusters_from_B_m_(on_axis(Configuration::at_entry(scenario).centre_B_m())),
-      engines_from_B_m_(on_axis(Configuration::at_powered_descent(scenario).centre_B_m())) {
+      engines_from_B_m_(on_axis(Configuration::at_powered_descent(scenario).centre_B_m())), engines_(scenario.engines) {
     configuration_.weigh(scenario.masses,
                          dispersed(scenario.dispersions.mass_fraction, Random{seed, case_number, Stream::mass}));
     centre_B_m_ = configuration_.centre_B_m();
@@ -165,8 +167,9 @@ void Vehicle::fire(flight::PyroId pyro, double now_s) {
     case PyroId::engine_valves: engines_.open_valves(now_s); break;
     case PyroId::backshell_separation:
         if (parachute_open(now_s))
-            let_go(separated_.backshell, stations.backshell_m, masses.backshell_and_parachute_kg, parachute_area_m2_,
-                   ParachuteLift{right_at_mortar_M_, now_s - *mortar_s_, parachute_plane_rad_});
+            let_go(
+                separated_.backshell, stations.backshell_m, masses.backshell_and_parachute_kg, parachute_area_m2_,
+                ParachuteLift{right_at_mortar_M_, now_s - *mortar_s_, parachute_plane_rad_, parachute_lift_to_drag_});
         else
             let_go(separated_.backshell, stations.backshell_m, masses.backshell_and_parachute_kg, aeroshell_area_m2);
         configuration_.backshell = false;
@@ -316,16 +319,16 @@ void Vehicle::add_air(double now_s, Step& step, const RigidBody& body, Wrench& w
         const Vector3 lift =
             parachute_lift_direction(forward, right_at_mortar_M_, since_mortar_s, parachute_plane_rad_);
         const Vector3 pull_M = pressure_Pa * parachute_area_m2_ * inflation * parachute_mach_factor(mach) *
-                               (parachute_lift_to_drag * lift - forward);
+                               (parachute_lift_to_drag_ * lift - forward);
         const Vector3 confluence_B = Vector3{0.0, 0.0, riser_station_m} - centre_B_m_;
         wrench.force_M += pull_M;
-        wrench.torque_B += confluence_B.cross(body.q_MB.conjugate() * pull_M) - wrist_damping_Nms * body.rate_B_rps;
+        wrench.torque_B += confluence_B.cross(body.q_MB.conjugate() * pull_M) - wrist_damping_Nms_ * body.rate_B_rps;
     }
     // The parachute's drag area includes the vehicle in its wake, so the vehicle's own drag fades as it opens.
     if (inflation >= 1.0) return;
     const Vector3 z_M = body.q_MB * Vector3::UnitZ();
     const double cosine = std::clamp(z_M.dot(forward), -1.0, 1.0);
-    const AeroCoefficients coefficients = aeroshell_coefficients(mach, std::acos(cosine));
+    const AeroCoefficients coefficients = scaled(aeroshell_coefficients(mach, std::acos(cosine)), aero_scale_, mach);
     const double area_N = pressure_Pa * aeroshell_area_m2 * aeroshell_factor(mach) * (1.0 - inflation);
     wrench.force_M -= area_N * coefficients.drag * forward;
     const Vector3 lean = z_M - cosine * forward;

@@ -122,8 +122,10 @@ class Vehicle {
     void add_air(double now_s, Step& step, const RigidBody& body, Wrench& wrench) const;
 
     Terrain terrain_;
-    double parachute_area_m2_;                 ///< with this case's drag
-    double parachute_plane_rad_;               ///< this case's angle from up of the plane of its first lift
+    double parachute_area_m2_;    ///< with this case's drag
+    double parachute_plane_rad_;  ///< this case's angle from up of the plane of its first lift
+    double parachute_lift_to_drag_, wrist_damping_Nms_;
+    std::vector<AeroScale> aero_scale_;
     std::array<double, 2> aeroshell_factors_;  ///< this case's drag and lift, at high and at low Mach numbers
     Atmosphere atmosphere_;
     Wind wind_;

@@ -137,8 +137,8 @@ TEST_CASE("a scenario names a grid beside it, holds it whole, and says which par
           "[scenario][terrain]") {
     const test::TemporaryFolder folder;
     const auto file = [&](const std::string& name, const std::string& text) {
-        std::ofstream{folder / name, std::ios::binary} << text;
-        return folder / name;
+        std::ofstream{folder.path() / name, std::ios::binary} << text;
+        return folder.path() / name;
     };
     const auto scenario_of = [&](const std::string& ground) {
         return scenario_from_file(

@@ -96,7 +96,8 @@ TEST_CASE("every field of the message reaches the simulation and comes back", "[
 TEST_CASE("no number of the schema is left out on the way to the simulation", "[scenario][R48]") {
     // What is left open is not written: that is a choice of its own.
     const auto whole = scenario_to_message(*scenario_from_text(
-        least + "ground_flight: true radio { tones_from_samples: false earth_set_after_entry_s: 299 }", "s"));
+        least + "ground_flight: true radio { tones_from_samples: false earth_set_after_entry_s: 299 } believed {}",
+        "s"));
     const std::function<void(const google::protobuf::Message&, const std::string&)> check =
         [&](const google::protobuf::Message& message, const std::string& name) {
             const auto* descriptor = message.GetDescriptor();
@@ -110,6 +111,36 @@ TEST_CASE("no number of the schema is left out on the way to the simulation", "[
             }
         };
     check(whole, "");
+}
+
+TEST_CASE("what is believed begins as the truth, and keeps what it says itself", "[scenario][believed]") {
+    const auto scenario = scenario_from_text(
+        least + "masses { rover_kg: 900 } steady_wind_east_mps: 4 density_scale { altitude_m: 0 scale: 1.1 } "
+                "aero_scale { mach: 5 drag: 1.02 } engines { least_thrust_N: 40 } guidance { divert_m: 320 } "
+                "believed { masses { propellant_kg: 380 } aero_scale { mach: 5 lift: 0.9 } gravity_fraction: 0.001 }",
+        "s");
+    INFO((scenario ? "" : scenario.error().message));
+    REQUIRE(scenario);
+    REQUIRE(scenario->believed);
+    const auto& belief = *scenario->believed;
+    CHECK(belief.masses.rover_kg == 900.0);
+    CHECK(belief.masses.propellant_kg == 380.0);
+    CHECK(belief.steady_wind_east_mps == 4.0);
+    REQUIRE(belief.density_scale.size() == 1);
+    CHECK(belief.density_scale[0].scale == 1.1);
+    REQUIRE(belief.aero_scale.size() == 1);
+    CHECK(belief.aero_scale[0].drag == 1.0);
+    CHECK(belief.aero_scale[0].lift == 0.9);
+    CHECK(belief.gravity_fraction == 0.001);
+    CHECK(scenario->aero_scale[0].drag == 1.02);
+    CHECK(scenario->engines.least_thrust_N == 40.0);
+    CHECK(scenario->guidance.divert_m == 320.0);
+    const auto again = scenario_from_text(scenario_to_text(*scenario), "again");
+    REQUIRE(again);
+    CHECK(scenario_to_text(*again) == scenario_to_text(*scenario));
+    CHECK_THAT(error_of(least + "believed { masses { entry_kg: 3500 } }"),
+               Catch::Contains("believed.masses.entry_kg: 3500 is not the sum of its parts"));
+    CHECK_FALSE(scenario_from_text(least, "s")->believed);
 }
 
 TEST_CASE("a scenario file that cannot be read is named", "[scenario]") {
@@ -139,6 +170,15 @@ TEST_CASE("a scenario file may be like another: what it sets counts, its lists r
     const auto third = file("third", "name: \"third\" like: \"other\"");
     CHECK(third->radio.light_time_s == 7.0);
     CHECK(third->system_faults.size() == 1);
+    // A list within a message, too.
+    REQUIRE(file("passes",
+                 "name: \"passes\" like: \"base\" radio { tone_outages { name: \"a\" event: \"sufr\" from_s: 1 "
+                 "to_s: 2 } }"));
+    const auto fourth = file("fourth", "name: \"fourth\" like: \"passes\" radio { tone_outages { name: \"b\" event: "
+                                       "\"sufr\" from_s: 3 to_s: 4 } }");
+    REQUIRE(fourth);
+    REQUIRE(fourth->radio.tone_outages.size() == 1);
+    CHECK(fourth->radio.tone_outages[0].from_s == 3.0);
 
     CHECK_THAT(file("nameless", "like: \"base\"").error().message, Catch::EndsWith("name: missing"));
     CHECK_THAT(file("lost", "name: \"l\" like: \"nobody\"").error().message, Catch::EndsWith("cannot be opened"));

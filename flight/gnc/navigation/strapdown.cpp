@@ -35,7 +35,9 @@ void Strapdown::shift(const NavigationShift& by) {
     // Over the step the frame turns by Δθ; on average half of it applies while Δv is sensed.
     const Vector3 delta_v_M = state_.q_MB * (delta_v_B + 0.5 * delta_angle_B.cross(delta_v_B));
     const Vector3 v_before = state_.v_MB_M;
-    state_.v_MB_M += delta_v_M + dt_s * free_acceleration(state_.p_MoB_M + 0.5 * dt_s * v_before, v_before);
+    const Vector3 p_half_M = state_.p_MoB_M + 0.5 * dt_s * v_before;
+    state_.v_MB_M += delta_v_M + dt_s * free_acceleration(p_half_M, v_before);
+    if (gravity_fraction_ != 0.0) state_.v_MB_M += dt_s * local_gravity(p_half_M, gravity_fraction_);
     state_.p_MoB_M += 0.5 * dt_s * (v_before + state_.v_MB_M);
     const Quaternion mars_turns = small_rotation({0.0, 0.0, -mars_spin_rps * dt_s});
     state_.q_MB = mars_turns * state_.q_MB * small_rotation(delta_angle_B);
