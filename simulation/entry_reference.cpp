@@ -227,8 +227,8 @@ double reference_bank_rad(double velocity_mps, double held_rad) {
 flight::EntryReference make_entry_reference(const Scenario& scenario) {
     const EntryFlight flight(scenario);
     const Atmosphere atmosphere(scenario.density_scale, scenario.air);
-    const Vector3 target = place(scenario.target.latitude_deg * degree_rad, scenario.target.longitude_deg * degree_rad,
-                                 scenario.target.radius_m);
+    const Target aim = aimed_target(scenario);
+    const Vector3 target = place(aim.latitude_deg * degree_rad, aim.longitude_deg * degree_rad, aim.radius_m);
     const double wanted_m =
         ground_step_m(nominal_entry(scenario), PointMass{target, Vector3::Zero()}, scenario.target.radius_m);
 

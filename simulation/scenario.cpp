@@ -116,6 +116,8 @@ std::vector<Bounded> bounded_fields(const Scenario& s) {
         {"guidance.divert_azimuth_deg", s.guidance.divert_azimuth_deg, -180.0, 360.0},
         {"guidance.entry_lift_to_drag", s.guidance.entry_lift_to_drag, 0.01, 1.0},
         {"guidance.engine_impulse_s", s.guidance.engine_impulse_s, 50.0, 500.0},
+        {"guidance.aim_east_m", s.guidance.aim_east_m, -aim_max_m, aim_max_m},
+        {"guidance.aim_north_m", s.guidance.aim_north_m, -aim_max_m, aim_max_m},
         {"steady_wind_east_mps", s.steady_wind_east_mps, -100.0, 100.0},
         {"steady_wind_north_mps", s.steady_wind_north_mps, -100.0, 100.0},
         {"radio.light_time_s", s.radio.light_time_s, 0.0, 1500.0},
@@ -461,6 +463,18 @@ Scenario undispersed(Scenario scenario) {
     // Each of its fields is a deviation, so a new field cannot be forgotten.
     scenario.dispersions = std::bit_cast<Dispersions>(std::array<double, sizeof(Dispersions) / sizeof(double)>{});
     return scenario;
+}
+
+Target aimed_target(const Scenario& scenario) {
+    Target target = scenario.target;
+    const auto& [east_m, north_m] = std::pair{scenario.guidance.aim_east_m, scenario.guidance.aim_north_m};
+    if (east_m == 0.0 && north_m == 0.0) return target;
+    const Vector3 up = place(target.latitude_deg * degree_rad, target.longitude_deg * degree_rad, 1.0);
+    const Horizon local = horizon(up);
+    const Vector3 aim = target.radius_m * up + east_m * local.east + north_m * local.north;
+    target.latitude_deg = latitude_rad(aim) / degree_rad;
+    target.longitude_deg += std::remainder(longitude_rad(aim) / degree_rad - target.longitude_deg, 360.0);
+    return target;
 }
 
 Scenario as_believed(Scenario scenario) {

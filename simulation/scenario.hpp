@@ -126,9 +126,11 @@ struct EngineDesign {
 struct Guidance {
     double divert_m = 304.0;  ///< the sidestep after backshell separation. [facts]
     double divert_azimuth_deg = 112.0;
-    double entry_lift_to_drag = 0.24;  ///< until the forces that are felt tell it
-    double engine_impulse_s = 210.0;   ///< by which propellant is counted
+    double entry_lift_to_drag = 0.24;            ///< until the forces that are felt tell it
+    double engine_impulse_s = 210.0;             ///< by which propellant is counted
+    double aim_east_m = 0.0, aim_north_m = 0.0;  ///< where guidance aims, from the target
 };
+inline constexpr double aim_max_m = 20'000.0;  ///< our assumption: what a footprint's centre may be off
 
 /// Drag and lift of the entry vehicle by those of the published table, by Mach number: linear between rows, held
 /// outside them.
@@ -383,6 +385,8 @@ inline constexpr std::size_t scenario_rows_max = 256;  ///< of any other list
 bool disperses_later(const Scenario& scenario);
 /// The scenario with every seeded error of `dispersions` switched off.
 Scenario undispersed(Scenario scenario);
+/// The target as guidance is told it: where it aims.
+Target aimed_target(const Scenario& scenario);
 /// The scenario with what is believed in place of the truth: the world that guidance is designed for, and in which
 /// ground flies along. Position, attitude and gravity stay true.
 Scenario as_believed(Scenario scenario);

@@ -8,30 +8,16 @@
 #include "server/cli/new_file.hpp"
 #include "server/cli/options.hpp"
 #include "server/cli/shipped_paths.hpp"
+#include "server/cli/study.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <memory>
-#include <thread>
 #include <tuple>
 
 namespace aeolis::server {
 namespace {
-
-constexpr std::uint64_t study_cases_max = 10'000;  // chosen: of each group of errors
-constexpr unsigned study_jobs_max = 256;
-
-/// All cases of a results file. The Error names the file.
-Result<campaign::CaseTable> table_of(const std::filesystem::path& file) {
-    const auto header = campaign::results_header(file);
-    if (!header) return header.error();
-    auto results = campaign::CampaignResults::open(file, header->cases);
-    if (!results) return results.error();
-    auto table = results->table();
-    if (table && table->numbers.empty()) return Error{file.string() + ": holds no case"};
-    return table;
-}
 
 int export_cases(const std::filesystem::path& file, const std::filesystem::path& csv,
                  const std::filesystem::path& hdf5) {
@@ -135,39 +121,15 @@ int footprints(const std::filesystem::path& file) {
     return 0;
 }
 
-struct StudyOptions {
+struct SensitivityOptions {
     SharedOptions shared;
     std::string scenario;
-    std::uint64_t cases = 0, seed = 1;
-    unsigned jobs = 0;
+    StudyOptions study;
     bool one_at_a_time = false;
-    std::filesystem::path folder = "run-data";
     std::filesystem::path out;
 };
 
-/// Flies what is missing of one group, and reads all of it.
-Result<campaign::CaseTable> group_flown(const StudyOptions& options, const simulation::Scenario& scenario,
-                                        const dictionary::Dictionary& dictionary, ProgressLine& line) {
-    const campaign::Order order{scenario,
-                                options.seed,
-                                options.cases,
-                                options.jobs > 0 ? options.jobs : std::max(1U, std::thread::hardware_concurrency()),
-                                campaign::results_file(options.folder, scenario.name, options.seed),
-                                false};
-    {
-        auto store = campaign::open_store(order, dictionary);
-        if (!store) return store.error();
-        const auto progress =
-            campaign::fly(*store, order, dictionary, stop_asked(), [&](const campaign::Progress& so_far) {
-                line.draw(scenario.name + " " + campaign::progress_line(so_far));
-            });
-        if (!progress) return progress.error();
-    }
-    if (stop_asked()) return Error{"interrupted; what was flown is kept, the same call goes on"};
-    return table_of(order.file);
-}
-
-int study(const StudyOptions& options) {
+int sensitivity(const SensitivityOptions& options) {
     const auto said = [](const Error& error) { return failed("campaign sensitivity: " + error.message); };
     if (!options.out.empty())
         if (const auto possible = can_be_made(options.out); !possible) return said(possible.error());
@@ -185,18 +147,19 @@ int study(const StudyOptions& options) {
         const auto groups = options.one_at_a_time ? campaign::single_errors(scenario) : campaign::error_groups();
         influences.reserve(groups.size());
         for (const campaign::ErrorGroup& group : groups) {
-            const auto table = group_flown(options, campaign::with_errors(scenario, group), dictionary, line);
+            const auto table = cases_flown(options.study, campaign::with_errors(scenario, group), dictionary, line);
             if (!table) return said(table.error());
             influences.push_back(campaign::influence_of(group.name, *table, course_deg));
         }
         auto all = scenario;
         all.name += "-all";  // a file of its own: that of the campaign may have more cases
-        const auto table = group_flown(options, all, dictionary, line);
+        const auto table = cases_flown(options.study, all, dictionary, line);
         if (!table) return said(table.error());
         together = campaign::influence_of("all", *table, course_deg);
     }
     fmt::print("{} (seed {}): each {} alone, {} cases; along the course {:.1f} deg at the target\n\n", scenario.name,
-               options.seed, options.one_at_a_time ? "error" : "group of errors", options.cases, course_deg);
+               options.study.seed, options.one_at_a_time ? "error" : "group of errors", options.study.cases,
+               course_deg);
     fmt::print("{}", campaign::sensitivity_table(influences, together));
     if (options.out.empty()) return 0;
     if (const auto made = make_file(options.out, campaign::sensitivity_csv(influences, together)); !made)
@@ -212,26 +175,17 @@ void add_campaign_analysis(CLI::App& campaign_app, int& exit_code) {
         command.add_option("FILE", file, "results of a campaign")->required();
     };
     {
-        const auto options = std::make_shared<StudyOptions>();
+        const auto options = std::make_shared<SensitivityOptions>();
         auto& command = *campaign_app.add_subcommand(
             "sensitivity",
             "flies the campaign with one group of errors at a time, and prints what each makes of the spread: "
             "tornado and budget of the landing ellipse");
         command.add_option("--scenario", options->scenario, "a file, or the name of a shipped one")->required();
-        command.add_option("--cases", options->cases, "cases of each group")
-            ->required()
-            ->check(whole_number())
-            ->check(CLI::Range(std::uint64_t{2}, study_cases_max));
-        command.add_option("--seed", options->seed, "seed of the errors")->check(whole_number())->capture_default_str();
-        command.add_option("--jobs", options->jobs, "cases flown at a time; one per processor if left out")
-            ->check(whole_number())
-            ->check(CLI::Range(1U, study_jobs_max));
+        add_study(command, options->study);
         command.add_flag("--one-at-a-time", options->one_at_a_time, "each error of the scenario alone, not by groups");
-        command.add_option("--folder", options->folder, "where the results of each group are kept")
-            ->capture_default_str();
         command.add_option("--csv", options->out, "write the table to this new file");
         add_shared(command, options->shared);
-        command.callback([options, &exit_code] { exit_code = study(*options); });
+        command.callback([options, &exit_code] { exit_code = sensitivity(*options); });
     }
     {
         struct Two {

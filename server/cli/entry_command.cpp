@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "server/campaign/campaign_order.hpp"
+#include "server/campaign/targeting.hpp"
 #include "server/cli/commands.hpp"
+#include "server/cli/long_work.hpp"
 #include "server/cli/options.hpp"
 #include "server/cli/shipped_paths.hpp"
+#include "server/cli/study.hpp"
 #include "simulation/entry_reference.hpp"
 
 #include <fmt/format.h>
@@ -31,17 +35,68 @@ int entry_reference(const EntryReferenceOptions& options) {
     return 0;
 }
 
+struct EntryTargetOptions {
+    SharedOptions shared;
+    std::string scenario;
+    StudyOptions study;
+    double tolerance_m = 0.0;
+    std::size_t rounds = 0;
+};
+
+/// Moves the aim of guidance until the mean of the landings meets the target, and prints what to write into the
+/// scenario. Exit code 1: it was not met.
+int entry_target(const EntryTargetOptions& options) {
+    const auto ready = flight_inputs(options.shared, options.scenario);
+    if (!ready) return failed(ready.error().message);
+    const auto& [dictionary, scenario] = *ready;
+    if (const auto many = campaign::check(scenario); !many)
+        return failed(options.scenario + ": " + many.error().message);
+    stop_at_interrupt();
+    const auto targeting = [&] {
+        ProgressLine line;
+        return campaign::aim_at_target(
+            campaign::aim_of(scenario), options.tolerance_m, options.rounds, [&](const campaign::Aim& aim) {
+                return cases_flown(options.study, campaign::with_aim(scenario, aim), dictionary, line);
+            });
+    }();
+    if (!targeting) return failed("entry target: " + targeting.error().message);
+    fmt::print("{} (seed {}): where guidance aims, and where the cases land, from the target\n\n{}\n", scenario.name,
+               options.study.seed, campaign::targeting_table(*targeting));
+    const campaign::AimedLandings& last = targeting->rounds.back();
+    if (!targeting->reached)
+        return failed(fmt::format("entry target: after {} rounds the mean still misses by {:.0f} m, more than {:g}",
+                                  targeting->rounds.size(), last.miss_m(), options.tolerance_m));
+    fmt::print("In the scenario:\n\n    guidance {{ aim_east_m: {:.0f} aim_north_m: {:.0f} }}\n", last.aim.east_m,
+               last.aim.north_m);
+    return 0;
+}
+
 }  // namespace
 
 void add_entry_command(CLI::App& program, int& exit_code) {
     const auto options = std::make_shared<EntryReferenceOptions>();
-    auto& command = *program.add_subcommand("entry", "prints tables of entry guidance");
+    auto& command = *program.add_subcommand("entry", "prints tables of entry guidance, and aims it");
     command.require_subcommand(1);
     auto& reference = *command.add_subcommand(
         "reference", "prints the tables that entry guidance follows, flown from the scenario (CSV)");
     reference.add_option("--scenario", options->scenario, "a file, or the name of a shipped one")->required();
     add_shared(reference, options->shared);
     reference.callback([options, &exit_code] { exit_code = entry_reference(*options); });
+
+    const auto aimed = std::make_shared<EntryTargetOptions>();
+    auto& target = *command.add_subcommand(
+        "target", "moves the point at which guidance aims until the mean of dispersed landings meets the target");
+    target.add_option("--scenario", aimed->scenario, "a file, or the name of a shipped one")->required();
+    add_study(target, aimed->study);
+    target.add_option("--tolerance-m", aimed->tolerance_m, "miss of the mean that is met")
+        ->default_val(50.0)  // NOLINT(readability-magic-numbers): chosen
+        ->check(CLI::Range(1.0, 10'000.0));
+    target.add_option("--rounds", aimed->rounds, "tries at most, each with all cases")
+        ->default_val(5)  // NOLINT(readability-magic-numbers): chosen
+        ->check(whole_number())
+        ->check(CLI::Range(1U, 20U));
+    add_shared(target, aimed->shared);
+    target.callback([aimed, &exit_code] { exit_code = entry_target(*aimed); });
 }
 
 }  // namespace aeolis::server

@@ -57,10 +57,9 @@ const Bindings<simulation::EngineDesign> engine_fields = {
     AEOLIS_BIND(EngineDesign, most_impulse_s),
 };
 const Bindings<simulation::Guidance> guidance_fields = {
-    AEOLIS_BIND(Guidance, divert_m),
-    AEOLIS_BIND(Guidance, divert_azimuth_deg),
-    AEOLIS_BIND(Guidance, entry_lift_to_drag),
-    AEOLIS_BIND(Guidance, engine_impulse_s),
+    AEOLIS_BIND(Guidance, divert_m),           AEOLIS_BIND(Guidance, divert_azimuth_deg),
+    AEOLIS_BIND(Guidance, entry_lift_to_drag), AEOLIS_BIND(Guidance, engine_impulse_s),
+    AEOLIS_BIND(Guidance, aim_east_m),         AEOLIS_BIND(Guidance, aim_north_m),
 };
 const Bindings<simulation::AeroScale> aero_fields = {
     AEOLIS_BIND(AeroScale, mach),
