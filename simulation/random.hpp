@@ -40,6 +40,9 @@ enum class Stream : std::uint64_t {
     carrier,
     rover_imu,
     placing,
+    parachute_oscillation,
+    radar_sand,
+    radar_b_sand,
 };
 
 /// Random numbers of one stream of one case of one seed: SplitMix64, and Box–Muller for the normal distribution.

@@ -104,6 +104,9 @@ struct Dispersions {
     double gyro_scale_fraction = 1.0e-5;  ///< of each gyro. Our assumption
     double imu_noise_mps = 5.0e-5;        ///< of each accelerometer, a reading. Our assumption
     double gyro_noise_rad = 2.0e-6;       ///< of each gyro, a reading. Our assumption
+    double density_aloft_fraction = 0.0;  ///< of density from 65 km up, growing evenly from 50 km; 0: as below
+    double parachute_oscillation_fraction = 0.0;  ///< of the swing of the parachute's area above Mach 1.4
+    double radar_sand_mps = 0.0;                  ///< of velocity readings that moving sand spoils on the sky crane
 };
 
 /// The ground around the target, over the sphere of its radius. A case adds its own (Dispersions). Our assumption.

@@ -40,7 +40,8 @@ Imu imu(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
 Radar radar(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number, flight::Unit unit) {
     const bool a = unit == flight::Unit::a;
     return {scenario.dispersions, Random{seed, case_number, a ? Stream::radar : Stream::radar_b},
-            Random{seed, case_number, a ? Stream::radar_dropout : Stream::radar_b_dropout}};
+            Random{seed, case_number, a ? Stream::radar_dropout : Stream::radar_b_dropout},
+            Random{seed, case_number, a ? Stream::radar_sand : Stream::radar_b_sand}};
 }
 
 bool on_four_engines(const flight::EngineCommand& engines) {
@@ -149,6 +150,11 @@ struct World::State {
         if (!vehicle.separated().heatshield.released()) return false;  // gone before the vehicle was placed
         return Radar::hides(vehicle.separated().heatshield.from(vehicle.at().p_MoB_M),
                             vehicle.q_MB() * vector3(beam.direction_B));
+    }
+
+    bool sand_moves() const {
+        constexpr double from_m = 30.0;  // our assumption: the plume reaches the ground
+        return vehicle.engines().running() && vehicle.height_m() < from_m;
     }
 
     void tell(const char* name) { events.push_back(moment(name, truth())); }
@@ -458,7 +464,7 @@ flight::DeviceInputs& World::sense() {
         for (std::uint32_t beam = 0; beam < Radar::beams; ++beam) {
             if (!Radar::due(beam, s.grid() - grid_per_tick, s.grid())) continue;
             flight::RadarBeam reading = s.radars[static_cast<std::size_t>(unit)].measure(
-                beam, s.vehicle.at(), s.vehicle.q_MB(), s.vehicle.terrain());
+                beam, s.vehicle.at(), s.vehicle.q_MB(), s.vehicle.terrain(), s.sand_moves());
             if (blind || s.heatshield_hides(reading)) reading = {reading.beam, reading.direction_B, false, 0.0, 0.0};
             in.radar.push_back(reading);
         }

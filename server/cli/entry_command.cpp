@@ -64,8 +64,9 @@ int entry_target(const EntryTargetOptions& options) {
                options.study.seed, campaign::targeting_table(*targeting));
     const campaign::AimedLandings& last = targeting->rounds.back();
     if (!targeting->reached)
-        return failed(fmt::format("entry target: after {} rounds the mean still misses by {:.0f} m, more than {:g}",
-                                  targeting->rounds.size(), last.miss_m(), options.tolerance_m));
+        return failed(fmt::format("entry target: after {} {} the mean still misses by {:.0f} m, more than {:g}",
+                                  targeting->rounds.size(), targeting->rounds.size() == 1 ? "round" : "rounds",
+                                  last.miss_m(), options.tolerance_m));
     fmt::print("In the scenario:\n\n    guidance {{ aim_east_m: {:.0f} aim_north_m: {:.0f} }}\n", last.aim.east_m,
                last.aim.north_m);
     return 0;

@@ -123,6 +123,9 @@ const Bindings<simulation::Dispersions> dispersion_fields = {
     AEOLIS_BIND(Dispersions, gyro_scale_fraction),
     AEOLIS_BIND(Dispersions, imu_noise_mps),
     AEOLIS_BIND(Dispersions, gyro_noise_rad),
+    AEOLIS_BIND(Dispersions, density_aloft_fraction),
+    AEOLIS_BIND(Dispersions, parachute_oscillation_fraction),
+    AEOLIS_BIND(Dispersions, radar_sand_mps),
 };
 const Bindings<simulation::Limits> limit_fields = {
     AEOLIS_BIND(Limits, propellant_left_min_kg),

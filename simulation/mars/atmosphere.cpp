@@ -8,6 +8,8 @@
 namespace aeolis::simulation {
 namespace {
 
+constexpr double grows_from_m = 50'000.0, grows_over_m = 15'000.0;  // of the departure. [facts] (L)
+
 // clang-format off
 /// Gale in the season of the landing, from a general circulation model. [gale-atmosphere]
 constexpr std::array<AirRow, 35> gale{{
@@ -90,9 +92,12 @@ Atmosphere::Atmosphere(std::span<const DensityScale> scales, std::span<const Air
     }
 }
 
-Atmosphere::Atmosphere(std::span<const DensityScale> scales, std::span<const AirRow> air, double density_fraction,
-                       Random random)
+Atmosphere::Atmosphere(std::span<const DensityScale> scales, std::span<const AirRow> air,
+                       const Dispersions& dispersions, Random random)
     : Atmosphere(scales, air) {
+    const double density_fraction = dispersions.density_fraction;
+    if (dispersions.density_aloft_fraction > 0.0 && density_fraction > 0.0)
+        aloft_growth_ = dispersions.density_aloft_fraction / density_fraction - 1.0;
     departure_fraction_ = 0.8 * density_fraction * random.normal();
     wave_fraction_ = 0.6 * std::numbers::sqrt2 * density_fraction;
     wave_phase_rad_ = 2.0 * std::numbers::pi * random.uniform();
@@ -112,7 +117,9 @@ double Atmosphere::departure(double altitude_m) const {
     if (wave_fraction_ == 0.0) return 1.0;
     const double wave =
         wave_fraction_ * std::sin(2.0 * std::numbers::pi * altitude_m / wave_length_m + wave_phase_rad_);
-    return std::max(0.2, 1.0 + departure_fraction_ + wave);
+    if (aloft_growth_ == 0.0) return std::max(0.2, 1.0 + departure_fraction_ + wave);
+    const double grown = 1.0 + aloft_growth_ * std::clamp((altitude_m - grows_from_m) / grows_over_m, 0.0, 1.0);
+    return std::max(0.2, 1.0 + grown * (departure_fraction_ + wave));
 }
 
 }  // namespace aeolis::simulation

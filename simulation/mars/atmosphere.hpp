@@ -22,12 +22,12 @@ struct Air {
 /// Density is interpolated exponentially, temperature and scale linearly; outside the table its last layers continue.
 /// Range −1 … 250 km above the landing radius; above 250 km there is no air.
 /// The departure is our assumption: four fifths of the scenario's fraction at all heights alike, three fifths as a wave
-/// over height.
+/// over height. Where the scenario has a larger fraction aloft, the departure grows evenly to it from 50 to 65 km. [facts]
 class Atmosphere {
   public:
     /// Without departure. `air`: empty: Gale's.
     explicit Atmosphere(std::span<const DensityScale> scales, std::span<const AirRow> air = {});
-    Atmosphere(std::span<const DensityScale> scales, std::span<const AirRow> air, double density_fraction,
+    Atmosphere(std::span<const DensityScale> scales, std::span<const AirRow> air, const Dispersions& dispersions,
                Random random);
 
     Air at(double altitude_m) const;
@@ -42,6 +42,7 @@ class Atmosphere {
     std::array<double, rows> log_density_{};
     std::array<double, rows> speed_of_sound_mps_{};
     double departure_fraction_ = 0.0, wave_fraction_ = 0.0, wave_phase_rad_ = 0.0;
+    double aloft_growth_ = 0.0;  ///< of the departure, from 50 to 65 km
 };
 
 }  // namespace aeolis::simulation

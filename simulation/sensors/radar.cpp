@@ -14,17 +14,18 @@ constexpr std::array<double, Radar::beams> off_axis_deg{0.0, 20.0, 20.0, 20.0, 5
 constexpr std::array<double, Radar::beams> azimuth_deg{0.0, 0.0, 120.0, 240.0, 60.0, 240.0};   // our assumption
 constexpr double heatshield_radius_m = 2.25;                                                   // [facts]
 constexpr double half_beam_rad = 1.5 * degree_rad;                                             // [facts]
+constexpr double spoilt_by_sand = 0.05;   // our assumption: sporadic, as was told of the flown landing
 constexpr double hides_within_m = 90.0;   // our assumption: see the header
 constexpr std::int64_t period_grid = 80;  // of 1/1600 s: 20 Hz
 constexpr std::array<std::int64_t, Radar::beams> phase_grid{0, 13, 27, 40, 53, 67};
 
 }  // namespace
 
-Radar::Radar(const Dispersions& dispersions, Random random, Random dropouts)
+Radar::Radar(const Dispersions& dispersions, Random random, Random dropouts, Random sand)
     : range_scale_(1.0 + dispersions.radar_range_fraction * random.normal()),
       range_noise_fraction_(0.5 * dispersions.radar_range_fraction),
       velocity_noise_mps_(0.5 * dispersions.radar_velocity_mps), dropout_fraction_(dispersions.radar_dropout_fraction),
-      noise_(random), dropouts_(dropouts) {
+      sand_mps_(dispersions.radar_sand_mps), noise_(random), dropouts_(dropouts), sand_(sand) {
     for (double& bias_mps : velocity_bias_mps_) bias_mps = dispersions.radar_velocity_mps * noise_.normal();
 }
 
@@ -49,7 +50,7 @@ void Radar::add_draws(std::vector<Draw>& draws) const {
 }
 
 flight::RadarBeam Radar::measure(std::uint32_t beam, const PointMass& at, const Quaternion& q_MB,
-                                 const Terrain& terrain) {
+                                 const Terrain& terrain, bool sand_moves) {
     flight::RadarBeam reading;
     reading.beam = static_cast<std::uint8_t>(beam);
     reading.direction_B = direction_B(beam);
@@ -59,12 +60,14 @@ flight::RadarBeam Radar::measure(std::uint32_t beam, const PointMass& at, const 
     const double range_noise = noise_.normal();
     const double velocity_noise = noise_.normal();
     const bool fails = dropouts_.uniform() < dropout_fraction_;
+    double sand_mps = 0.0;
+    if (sand_mps_ > 0.0 && sand_moves && sand_.uniform() < spoilt_by_sand) sand_mps = sand_mps_ * sand_.normal();
     reading.valid = !fails && truth.meets && truth.range_m >= least_range_m && truth.range_m <= largest_range_m[beam] &&
                     truth.incidence_cosine >= std::cos(largest_incidence_rad);
     if (!reading.valid) return reading;
     reading.range_m = truth.range_m * (range_scale_ + range_noise_fraction_ * range_noise);
     reading.range_rate_mps =
-        -at.v_MB_M.dot(direction_M) + velocity_bias_mps_[beam] + velocity_noise_mps_ * velocity_noise;
+        -at.v_MB_M.dot(direction_M) + velocity_bias_mps_[beam] + velocity_noise_mps_ * velocity_noise + sand_mps;
     return reading;
 }
 

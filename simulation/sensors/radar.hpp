@@ -19,11 +19,12 @@ namespace aeolis::simulation {
 /// Our assumptions: their azimuths (0°, 120°, 240°; 60°, 240°), ranges from 4 m to 12, 12 and 9 km (a flatter beam has
 /// a weaker echo), at most 65° between beam and the ground's normal, and that a reading is as of its tick. A case has
 /// one range scale error, and each beam its own velocity bias, with the scenario's deviations; noise on each reading
-/// has half of that, and a fraction of the readings fails. The hung rover and the plume are not seen.
+/// has half of that, and a fraction of the readings fails. The hung rover and the plume are not seen. Where the
+/// scenario has moving sand, it spoils the velocity of one reading in twenty on the sky crane.
 class Radar {
   public:
-    /// `dropouts` draws the readings that fail.
-    Radar(const Dispersions& dispersions, Random random, Random dropouts);
+    /// `dropouts` draws the readings that fail, `sand` those that sand spoils.
+    Radar(const Dispersions& dispersions, Random random, Random dropouts, Random sand);
 
     void add_draws(std::vector<Draw>& draws) const;
 
@@ -36,8 +37,9 @@ class Radar {
     /// the ground's echo is stronger.
     static bool hides(const Vector3& to_heatshield_M, const Vector3& direction_M);
 
-    /// Measures with one beam now.
-    flight::RadarBeam measure(std::uint32_t beam, const PointMass& at, const Quaternion& q_MB, const Terrain& terrain);
+    /// Measures with one beam now. `sand_moves`: engines blow at the ground from near.
+    flight::RadarBeam measure(std::uint32_t beam, const PointMass& at, const Quaternion& q_MB, const Terrain& terrain,
+                              bool sand_moves = false);
 
     /// Whether `beam` measures between two moments of the 1600 Hz grid (first excluded, last included).
     static bool due(std::uint32_t beam, std::int64_t after, std::int64_t until);
@@ -45,8 +47,8 @@ class Radar {
   private:
     double range_scale_, range_noise_fraction_, velocity_noise_mps_;
     std::array<double, beams> velocity_bias_mps_{};
-    double dropout_fraction_;
-    Random noise_, dropouts_;
+    double dropout_fraction_, sand_mps_;
+    Random noise_, dropouts_, sand_;
 };
 
 }  // namespace aeolis::simulation

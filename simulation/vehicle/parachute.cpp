@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace aeolis::simulation {
 namespace {
@@ -42,6 +43,11 @@ Vector3 parachute_lift_direction(const Vector3& forward, const Vector3& right_M,
     const double turned_rad = from_up_rad + plane_turns_rps * (since_mortar_s - line_stretch_s);
     const Vector3 right = (right_M - right_M.dot(forward) * forward).normalized();
     return std::cos(turned_rad) * right.cross(forward) + std::sin(turned_rad) * right;
+}
+
+double ParachuteOscillation::factor(double mach, double since_mortar_s) const {
+    constexpr double swings_above_mach = 1.4, rate_rps = 4.0 * std::numbers::pi;
+    return mach > swings_above_mach ? 1.0 + fraction * std::sin(rate_rps * since_mortar_s + phase_rad) : 1.0;
 }
 
 double parachute_mach_factor(double mach) {

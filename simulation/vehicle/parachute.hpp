@@ -33,4 +33,12 @@ Vector3 parachute_lift_direction(const Vector3& forward, const Vector3& right_M,
 /// Drag area relative to that at terminal speed.
 double parachute_mach_factor(double mach);
 
+/// A case's swing of the drag area above Mach 1.4, in fractions of it. [facts] that it swings; two a second is our
+/// assumption.
+struct ParachuteOscillation {
+    double fraction = 0.0;
+    double phase_rad = 0.0;
+    double factor(double mach, double since_mortar_s) const;
+};
+
 }  // namespace aeolis::simulation

@@ -22,6 +22,11 @@ double dispersed(double fraction, Random random) {
     return 1.0 + fraction * random.normal();
 }
 
+ParachuteOscillation oscillation_of(const Scenario& scenario, Random random) {
+    const double fraction = scenario.dispersions.parachute_oscillation_fraction * random.normal();
+    return {fraction, 2.0 * std::numbers::pi * random.uniform()};
+}
+
 }  // namespace
 
 Vehicle::Vehicle(const Scenario& scenario, const PointMass& start, const Quaternion& q_MB, std::uint64_t seed,
@@ -31,12 +36,13 @@ Vehicle::Vehicle(const Scenario& scenario, const PointMass& start, const Quatern
                                                                      Random{seed, case_number, Stream::parachute})),
       parachute_plane_rad_(scenario.dispersions.parachute_plane_deg * degree_rad *
                            Random{seed, case_number, Stream::swing}.normal()),
+      parachute_oscillation_(oscillation_of(scenario, Random{seed, case_number, Stream::parachute_oscillation})),
       parachute_lift_to_drag_(scenario.parachute_lift_to_drag), wrist_damping_Nms_(scenario.wrist_damping_Nms),
       aero_scale_(scenario.aero_scale),
       aeroshell_factors_{
           dispersed(scenario.dispersions.drag_fraction, Random{seed, case_number, Stream::drag}),
           dispersed(scenario.dispersions.slow_drag_fraction, Random{seed, case_number, Stream::slow_drag})},
-      atmosphere_(scenario.density_scale, scenario.air, scenario.dispersions.density_fraction,
+      atmosphere_(scenario.density_scale, scenario.air, scenario.dispersions,
                   Random{seed, case_number, Stream::density}),
       wind_(scenario.steady_wind_east_mps, scenario.steady_wind_north_mps, scenario.dispersions.wind_mps,
             Random{seed, case_number, Stream::wind},
@@ -54,6 +60,7 @@ void Vehicle::disperse(const Scenario& scenario, const PointMass& at, std::uint6
     terrain_ = drawn.terrain_;
     parachute_area_m2_ = drawn.parachute_area_m2_;
     parachute_plane_rad_ = drawn.parachute_plane_rad_;
+    parachute_oscillation_ = drawn.parachute_oscillation_;
     aeroshell_factors_ = drawn.aeroshell_factors_;
     configuration_.weigh(drawn.configuration_.masses(), 1.0);
     atmosphere_ = drawn.atmosphere_;
@@ -70,6 +77,7 @@ void Vehicle::redraw(const Scenario& scenario, std::uint64_t seed, std::uint64_t
     if (all || !mortar_s_) {
         parachute_area_m2_ = drawn.parachute_area_m2_;
         parachute_plane_rad_ = drawn.parachute_plane_rad_;
+        parachute_oscillation_ = drawn.parachute_oscillation_;
     }
     if (all || configuration_.heatshield) terrain_ = drawn.terrain_;  // later the radar may have seen it
     if (all) configuration_.weigh(drawn.configuration_.masses(), 1.0);
@@ -138,6 +146,8 @@ void Vehicle::add_draws(const Scenario& scenario, std::vector<Draw>& draws) cons
     draws.push_back({"wind_north_mps", wind_.north_mps()});
     draws.push_back({"parachute_drag_fraction", parachute_area_m2_ / scenario.parachute_drag_area_m2 - 1.0});
     draws.push_back({"parachute_plane_deg", parachute_plane_rad_ / degree_rad});
+    if (parachute_oscillation_.fraction != 0.0)
+        draws.push_back({"parachute_oscillation_fraction", parachute_oscillation_.fraction});
     draws.push_back({"terrain_height_m", terrain_.height_at_target_m()});
     draws.push_back({"terrain_slope_deg", std::atan(terrain_.rise_M().norm()) / degree_rad});
 }
@@ -318,8 +328,9 @@ void Vehicle::add_air(double now_s, Step& step, const RigidBody& body, Wrench& w
     if (inflation > 0.0) {
         const Vector3 lift =
             parachute_lift_direction(forward, right_at_mortar_M_, since_mortar_s, parachute_plane_rad_);
-        const Vector3 pull_M = pressure_Pa * parachute_area_m2_ * inflation * parachute_mach_factor(mach) *
-                               (parachute_lift_to_drag_ * lift - forward);
+        double drag_N = pressure_Pa * parachute_area_m2_ * inflation * parachute_mach_factor(mach);
+        if (parachute_oscillation_.fraction != 0.0) drag_N *= parachute_oscillation_.factor(mach, since_mortar_s);
+        const Vector3 pull_M = drag_N * (parachute_lift_to_drag_ * lift - forward);
         const Vector3 confluence_B = Vector3{0.0, 0.0, riser_station_m} - centre_B_m_;
         wrench.force_M += pull_M;
         wrench.torque_B += confluence_B.cross(body.q_MB.conjugate() * pull_M) - wrist_damping_Nms_ * body.rate_B_rps;

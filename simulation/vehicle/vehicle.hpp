@@ -14,6 +14,7 @@
 #include "simulation/vehicle/configuration.hpp"
 #include "simulation/vehicle/engines.hpp"
 #include "simulation/vehicle/rigid_body.hpp"
+#include "simulation/vehicle/parachute.hpp"
 #include "simulation/vehicle/separated_bodies.hpp"
 #include "simulation/vehicle/stage_and_rover.hpp"
 #include "simulation/vehicle/thrusters.hpp"
@@ -124,6 +125,7 @@ class Vehicle {
     Terrain terrain_;
     double parachute_area_m2_;    ///< with this case's drag
     double parachute_plane_rad_;  ///< this case's angle from up of the plane of its first lift
+    ParachuteOscillation parachute_oscillation_;
     double parachute_lift_to_drag_, wrist_damping_Nms_;
     std::vector<AeroScale> aero_scale_;
     std::array<double, 2> aeroshell_factors_;  ///< this case's drag and lift, at high and at low Mach numbers

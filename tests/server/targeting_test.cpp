@@ -105,7 +105,7 @@ TEST_CASE("aeolis entry target prints the rounds and the line for the scenario",
     // What was flown is kept, and with one try the target is not met.
     const auto once = entry_target("--tolerance-m 1 --rounds 1");
     CHECK(once.code == 1);
-    CHECK_THAT(once.text, Catch::Contains("after 1 rounds the mean still misses by"));
+    CHECK_THAT(once.text, Catch::Contains("after 1 round the mean still misses by"));
     CHECK(entry_target("--rounds 0").code == 2);
 }
 

@@ -4,8 +4,10 @@
 #include "simulation/entry_flight.hpp"
 #include "simulation/entry_reference.hpp"
 #include "simulation/initial_state.hpp"
+#include "simulation/mars/atmosphere.hpp"
 #include "simulation/vehicle/aeroshell.hpp"
 #include "simulation/vehicle/engines.hpp"
+#include "simulation/vehicle/parachute.hpp"
 #include "tests/simulation/gale.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/gnc_venue.hpp"
@@ -238,6 +240,33 @@ TEST_CASE("beliefs and vehicles that cannot be are named", "[simulation][scenari
     CHECK(found(scenario, "engines.least_thrust_N: 4000 is outside"));
     scenario.engines.most_impulse_s = 100.0;
     CHECK(found(scenario, "engines.most_impulse_s: 100 is outside"));
+}
+
+TEST_CASE("the departure of the air grows from 50 km to what it is aloft", "[simulation][atmosphere]") {
+    Dispersions dispersions{};
+    dispersions.density_fraction = 0.04;
+    const Atmosphere usual{{}, {}, dispersions, Random{1, 3, Stream::density}};
+    dispersions.density_aloft_fraction = 0.2;
+    const Atmosphere grown{{}, {}, dispersions, Random{1, 3, Stream::density}};
+    const Atmosphere plain{{}};
+    const auto departure = [&](const Atmosphere& air, double altitude_m) {
+        return air.at(altitude_m).density_kgm3 / plain.at(altitude_m).density_kgm3 - 1.0;
+    };
+    CHECK(departure(grown, 30'000.0) == departure(usual, 30'000.0));
+    CHECK(departure(grown, 50'000.0) == Approx(departure(usual, 50'000.0)));
+    CHECK(departure(grown, 57'500.0) == Approx(3.0 * departure(usual, 57'500.0)));
+    CHECK(departure(grown, 65'000.0) == Approx(5.0 * departure(usual, 65'000.0)));
+    CHECK(departure(grown, 110'000.0) == Approx(5.0 * departure(usual, 110'000.0)));
+    CHECK(departure(usual, 65'000.0) != 0.0);
+}
+
+TEST_CASE("the parachute's area swings above Mach 1.4 alone, two times a second", "[simulation][parachute]") {
+    const ParachuteOscillation swing{0.1, 0.0};
+    CHECK(swing.factor(1.3, 2.125) == 1.0);
+    CHECK(swing.factor(1.6, 2.125) == Approx(1.1));
+    CHECK(swing.factor(1.6, 2.375) == Approx(0.9));
+    CHECK(swing.factor(1.6, 2.625) == Approx(1.1));
+    CHECK(ParachuteOscillation{}.factor(1.6, 2.125) == 1.0);
 }
 
 }  // namespace simulation_believed_test

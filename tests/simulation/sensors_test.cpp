@@ -57,7 +57,8 @@ TEST_CASE("the IMU gives 200 readings a second, three or four a tick, and counts
 TEST_CASE("a radar beam measures slant range and closing speed to the ground below", "[simulation][radar]") {
     const Dispersions none = tests::undisturbed_scenario().dispersions;
     constexpr double ground_m = 3391148.0;
-    Radar radar{none, Random{1, 0, Stream::radar}, Random{1, 0, Stream::radar_dropout}};
+    Radar radar{none, Random{1, 0, Stream::radar}, Random{1, 0, Stream::radar_dropout},
+                Random{1, 0, Stream::radar_sand}};
     const Terrain flat{tests::undisturbed_scenario(), Random{1, 0, Stream::terrain}};
     const Vector3 up = Vector3::UnitX();
     const PointMass at{(ground_m + 2000.0) * up, -80.0 * up + 10.0 * Vector3::UnitY()};
@@ -78,7 +79,8 @@ TEST_CASE("a radar beam measures slant range and closing speed to the ground bel
 
 TEST_CASE("a beam that is out of range, too flat or turned away measures nothing", "[simulation][radar]") {
     const Dispersions none = tests::undisturbed_scenario().dispersions;
-    Radar radar{none, Random{1, 0, Stream::radar}, Random{1, 0, Stream::radar_dropout}};
+    Radar radar{none, Random{1, 0, Stream::radar}, Random{1, 0, Stream::radar_dropout},
+                Random{1, 0, Stream::radar_sand}};
     const Terrain flat{tests::undisturbed_scenario(), Random{1, 0, Stream::terrain}};
     const Vector3 up = Vector3::UnitX();
     const Quaternion down = Quaternion::FromTwoVectors(Vector3::UnitZ(), -up);
@@ -93,7 +95,8 @@ TEST_CASE("a beam that is out of range, too flat or turned away measures nothing
 
 TEST_CASE("a beam measures up to its own range, and nothing nearer than four metres", "[simulation][radar]") {
     const Dispersions none = tests::undisturbed_scenario().dispersions;
-    Radar radar{none, Random{1, 0, Stream::radar}, Random{1, 0, Stream::radar_dropout}};
+    Radar radar{none, Random{1, 0, Stream::radar}, Random{1, 0, Stream::radar_dropout},
+                Random{1, 0, Stream::radar_sand}};
     const Terrain flat{tests::undisturbed_scenario(), Random{1, 0, Stream::terrain}};
     const Vector3 up = Vector3::UnitX();
     const Quaternion down = Quaternion::FromTwoVectors(Vector3::UnitZ(), -up);
@@ -114,7 +117,8 @@ TEST_CASE("on a slope the beam that would graze it measures nothing, the one acr
     Scenario scenario = tests::undisturbed_scenario();
     scenario.ground.slope_deg = 18.0;
     const Terrain slope{scenario, Random{1, 0, Stream::terrain}};
-    Radar radar{scenario.dispersions, Random{1, 0, Stream::radar}, Random{1, 0, Stream::radar_dropout}};
+    Radar radar{scenario.dispersions, Random{1, 0, Stream::radar}, Random{1, 0, Stream::radar_dropout},
+                Random{1, 0, Stream::radar_sand}};
     const Horizon at = horizon(place(scenario.target.latitude_deg * degree_rad,
                                      scenario.target.longitude_deg * degree_rad, scenario.target.radius_m));
     // Beams 4 and 5 look 50° to either side; here along the rise, which is to the north.
@@ -138,9 +142,11 @@ TEST_CASE("the part of the radar's readings that the scenario says fails, and by
     const Vector3 up = Vector3::UnitX();
     const Quaternion down = Quaternion::FromTwoVectors(Vector3::UnitZ(), -up);
     const PointMass at{(3391148.0 + 1000.0) * up, -80.0 * up};
-    Radar whole{some, Random{1, 0, Stream::radar}, Random{1, 0, Stream::radar_dropout}};
+    Radar whole{some, Random{1, 0, Stream::radar}, Random{1, 0, Stream::radar_dropout},
+                Random{1, 0, Stream::radar_sand}};
     some.radar_dropout_fraction = 0.2;
-    Radar failing{some, Random{1, 0, Stream::radar}, Random{1, 0, Stream::radar_dropout}};
+    Radar failing{some, Random{1, 0, Stream::radar}, Random{1, 0, Stream::radar_dropout},
+                  Random{1, 0, Stream::radar_sand}};
     int failed = 0;
     for (int i = 0; i < 2000; ++i) {
         const auto reading = failing.measure(0, at, down, flat), same = whole.measure(0, at, down, flat);
@@ -230,6 +236,37 @@ TEST_CASE("the rover's IMU measures what the rover feels, with errors of the sce
     for (int seed = 1; seed <= seeds; ++seed) sum += force_error(shipped, seed).squaredNorm();
     const double noise_mps2 = shipped.imu_noise_mps * 200.0;  // by far the largest of its errors
     CHECK(std::sqrt(sum / (3.0 * seeds)) == Approx(noise_mps2).epsilon(0.1));
+}
+
+TEST_CASE("moving sand spoils some velocities on the sky crane, and nothing else of the radar",
+          "[simulation][sensors]") {
+    Scenario scenario = tests::undisturbed_scenario();
+    const PointMass at{place(scenario.target.latitude_deg * degree_rad, scenario.target.longitude_deg * degree_rad,
+                             scenario.target.radius_m + 20.0),
+                       Vector3::Zero()};
+    const Quaternion down = Quaternion::FromTwoVectors(Vector3::UnitZ(), -at.p_MoB_M);
+    const Terrain terrain{scenario, Random{1, 0, Stream::terrain}};
+    Dispersions sandy = scenario.dispersions;
+    sandy.radar_sand_mps = 0.5;
+    const auto radar = [](const Dispersions& dispersions) {
+        return Radar{dispersions, Random{1, 0, Stream::radar}, Random{1, 0, Stream::radar_dropout},
+                     Random{1, 0, Stream::radar_sand}};
+    };
+    Radar clean = radar(scenario.dispersions), spoilt = radar(sandy), still = radar(sandy);
+    int differ = 0;
+    double squares = 0.0;
+    constexpr int readings = 20000;
+    for (int i = 0; i < readings; ++i) {
+        const auto expected = clean.measure(0, at, down, terrain, true);
+        const auto told = spoilt.measure(0, at, down, terrain, true);
+        REQUIRE(told.range_m == expected.range_m);
+        REQUIRE(still.measure(0, at, down, terrain, false).range_rate_mps == expected.range_rate_mps);
+        const double by_mps = told.range_rate_mps - expected.range_rate_mps;
+        differ += by_mps != 0.0 ? 1 : 0;
+        squares += by_mps * by_mps;
+    }
+    CHECK(differ / static_cast<double>(readings) == Approx(0.05).margin(0.01));
+    CHECK(std::sqrt(squares / differ) == Approx(0.5).epsilon(0.1));
 }
 
 }  // namespace simulation_sensors_test
