@@ -637,6 +637,12 @@ void Landing::inject(Fault fault) {
     } else if (auto* const wind = std::get_if<WindShift>(&fault)) {
         wind->begin_before_entry_s = before_entry_s;
         s.world.inject(*wind);
+    } else if (auto* const air = std::get_if<AirShift>(&fault)) {
+        air->begin_before_entry_s = before_entry_s;
+        s.world.inject(*air);
+    } else if (auto* const sensor = std::get_if<SensorError>(&fault)) {
+        sensor->begin_before_entry_s = before_entry_s;
+        s.world.inject(*sensor);
     } else if (const auto* const outage = std::get_if<StationOutage>(&fault)) {
         s.scenario.station_outages.push_back(begin_now(*outage));
     } else if (const auto* const orbiter = std::get_if<OrbiterOutage>(&fault)) {

@@ -172,6 +172,8 @@ void check_list_sizes(const Scenario& s, std::vector<std::string>& found) {
     at_most(scenario_rows_max, "orbiter_outages", s.orbiter_outages.size());
     at_most(scenario_rows_max, "uhf_losses", s.uhf_losses.size());
     at_most(scenario_rows_max, "wind_shifts", s.wind_shifts.size());
+    at_most(scenario_rows_max, "air_shifts", s.air_shifts.size());
+    at_most(scenario_rows_max, "sensor_errors", s.sensor_errors.size());
     if (!found.empty()) return;
     for (std::size_t i = 0; i < s.radio.relay_passes.size(); ++i)
         at_most(scenario_rows_max, "radio.relay_passes[" + std::to_string(i) + "].rates",
@@ -423,6 +425,28 @@ void check_wind_shifts(const Scenario& scenario, std::vector<std::string>& found
                                 " is outside -100 … 100");
 }
 
+void check_air_shifts(const Scenario& scenario, std::vector<std::string>& found) {
+    check_spells(scenario, scenario.air_shifts, "air_shifts", found);
+    for (std::size_t i = 0; i < scenario.air_shifts.size(); ++i)
+        if (const double fraction = scenario.air_shifts[i].fraction; !(fraction >= -0.5 && fraction <= 1.0))
+            found.push_back("air_shifts[" + std::to_string(i) + "].fraction: " + number(fraction) +
+                            " is outside -0.5 … 1");
+}
+
+void check_sensor_errors(const Scenario& scenario, std::vector<std::string>& found) {
+    check_spells(scenario, scenario.sensor_errors, "sensor_errors", found);
+    for (std::size_t i = 0; i < scenario.sensor_errors.size(); ++i) {
+        const SensorError& error = scenario.sensor_errors[i];
+        const std::string name = "sensor_errors[" + std::to_string(i) + "].";
+        if (error.device != flight::Device::imu && error.device != flight::Device::radar)
+            found.push_back(name + "device: only the IMU and the radar measure what can be off");
+        for (const auto& [field, value] :
+             {std::pair{"off_by", error.off_by}, std::pair{"grows_per_s", error.grows_per_s}})
+            if (!(value >= -100.0 && value <= 100.0))
+                found.push_back(name + field + ": " + number(value) + " is outside -100 … 100");
+    }
+}
+
 void check_computer_resets(const Scenario& scenario, std::vector<std::string>& found) {
     for (std::size_t i = 0; i < scenario.computer_resets.size(); ++i) {
         const double before_entry_s = scenario.computer_resets[i].before_entry_s;
@@ -580,6 +604,8 @@ std::vector<std::string> impossible_values(const Scenario& scenario) {
     check_spells(scenario, scenario.orbiter_outages, "orbiter_outages", found);
     check_uhf_losses(scenario, found);
     check_wind_shifts(scenario, found);
+    check_air_shifts(scenario, found);
+    check_sensor_errors(scenario, found);
     check_device_faults(scenario, found);
     check_computer_resets(scenario, found);
     check_test_venue(scenario, found);

@@ -276,6 +276,24 @@ struct WindShift {
     double north_mps = 0.0;
 };
 
+/// The air is denser for a while, at all heights, by that fraction of it.
+struct AirShift {
+    double begin_before_entry_s = 0.0;
+    double duration_s = 0.0;
+    double fraction = 0.0;
+};
+
+/// An IMU or radar measures wrongly for a while, and says nothing of it.
+struct SensorError {
+    flight::Device device{};
+    flight::Unit unit{};
+    double begin_before_entry_s = 0.0;
+    double duration_s = 0.0;
+    double off_by = 0.0;       ///< IMU: each accelerometer [m/s²]; radar: the velocity by each beam [m/s]
+    double grows_per_s = 0.0;  ///< added for each second since it began
+    double now(double before_entry_s) const { return off_by + grows_per_s * (begin_before_entry_s - before_entry_s); }
+};
+
 /// Whether what begins and lasts so goes on now.
 template <typename Spell>
 bool goes_on(const Spell& spell, double before_entry_s) {
@@ -284,7 +302,8 @@ bool goes_on(const Spell& spell, double before_entry_s) {
 }
 
 /// The faults that an instructor may inject during a landing.
-using Fault = std::variant<SystemFault, DeviceFault, ComputerReset, StationOutage, OrbiterOutage, UhfLoss, WindShift>;
+using Fault = std::variant<SystemFault, DeviceFault, ComputerReset, StationOutage, OrbiterOutage, UhfLoss, WindShift,
+                           AirShift, SensorError>;
 
 /// The limits of a landing. A rover that lands outside them still stands; limits.hpp reports by how much they were
 /// exceeded.
@@ -375,6 +394,8 @@ struct Scenario {
     std::vector<OrbiterOutage> orbiter_outages;
     std::vector<UhfLoss> uhf_losses;
     std::vector<WindShift> wind_shifts;
+    std::vector<AirShift> air_shifts;
+    std::vector<SensorError> sensor_errors;
     double bus_message_error_fraction = 1.0e-4;  ///< of the messages on the buses, at each transmission. Our assumption
 };
 

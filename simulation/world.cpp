@@ -170,12 +170,16 @@ struct World::State {
     void fly_on() {
         events.clear();
         shift_wind();
+        shift_air();
         fly_one_tick();
         buses.frame(sclk());
         obey();
         watch();
     }
     void shift_wind();
+    void shift_air();
+    /// By how much a unit measures wrongly now, beside what was drawn.
+    double sensor_off_by(flight::Device device, flight::Unit unit) const;
     void fly_one_tick();
     void measure_last_tick();
     void touch_ground(const std::optional<PointMass>& rover);
@@ -233,6 +237,21 @@ void World::State::shift_wind() {
     vehicle.shift_wind(east_mps, north_mps);
 }
 
+void World::State::shift_air() {
+    double factor = 1.0;
+    for (const AirShift& shift : scenario.air_shifts)
+        if (goes_on(shift, scenario.entry_sclk - sclk())) factor *= 1.0 + shift.fraction;
+    vehicle.shift_air(factor);
+}
+
+double World::State::sensor_off_by(flight::Device device, flight::Unit unit) const {
+    double off_by = 0.0;
+    for (const SensorError& error : scenario.sensor_errors)
+        if (error.device == device && error.unit == unit && goes_on(error, scenario.entry_sclk - sclk()))
+            off_by += error.now(scenario.entry_sclk - sclk());
+    return off_by;
+}
+
 // What a copy measures that flies ahead is, but for the change of two ticks, what the vehicle has measured.
 void World::State::measure_last_tick() {
     State ahead{*this};
@@ -261,7 +280,9 @@ void World::State::fly_one_tick() {
             stands ? Vector3{-free_fall(vehicle.at().p_MoB_M, Vector3::Zero())} : vehicle.specific_force_M();
         imu.integrate(felt, before, vehicle.q_MB(), step_s);
         if (next % grid_per_reading == 0) {
-            const flight::ImuSample sample = imu.read(static_cast<std::uint32_t>(next / grid_per_reading));
+            flight::ImuSample sample = imu.read(static_cast<std::uint32_t>(next / grid_per_reading));
+            if (const double off_mps2 = sensor_off_by(flight::Device::imu, imu_unit); off_mps2 != 0.0)
+                for (double& axis_mps : sample.delta_v_mps) axis_mps += off_mps2 * Imu::reading_s;
             if (buses.imu_sample_arrives()) imu_samples.push_back(sample);
         }
         at = next;
@@ -465,6 +486,7 @@ flight::DeviceInputs& World::sense() {
             if (!Radar::due(beam, s.grid() - grid_per_tick, s.grid())) continue;
             flight::RadarBeam reading = s.radars[static_cast<std::size_t>(unit)].measure(
                 beam, s.vehicle.at(), s.vehicle.q_MB(), s.vehicle.terrain(), s.sand_moves());
+            if (reading.valid) reading.range_rate_mps += s.sensor_off_by(flight::Device::radar, unit);
             if (blind || s.heatshield_hides(reading)) reading = {reading.beam, reading.direction_B, false, 0.0, 0.0};
             in.radar.push_back(reading);
         }
@@ -516,6 +538,14 @@ void World::inject(const SystemFault& fault) {
 
 void World::inject(const WindShift& shift) {
     state_->scenario.wind_shifts.push_back(shift);
+}
+
+void World::inject(const AirShift& shift) {
+    state_->scenario.air_shifts.push_back(shift);
+}
+
+void World::inject(const SensorError& error) {
+    state_->scenario.sensor_errors.push_back(error);
 }
 
 void World::set_nvm(std::uint32_t used_octets, std::uint32_t capacity_octets) {

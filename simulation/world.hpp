@@ -82,6 +82,8 @@ class World {
     void inject(const DeviceFault& fault);
     void inject(const SystemFault& fault);
     void inject(const WindShift& shift);
+    void inject(const AirShift& shift);
+    void inject(const SensorError& error);
     /// Reports the recorder's fill level to the computer.
     void set_nvm(std::uint32_t used_octets, std::uint32_t capacity_octets);
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -77,6 +78,25 @@ std::string text_of(const v1::FaultInjection& injected) {
                            commands::shortest_text(injected.wind_shift().east_mps()),
                            commands::shortest_text(injected.wind_shift().north_mps()),
                            seconds(injected.wind_shift().duration_s()));
+    case v1::FaultInjection::kAirShift: {
+        const auto& shift = injected.air_shift();
+        return fmt::format("the air is {} % {}, for {}", commands::shortest_text(100.0 * std::abs(shift.fraction())),
+                           shift.fraction() < 0.0 ? "thinner" : "denser", seconds(shift.duration_s()));
+    }
+    case v1::FaultInjection::kSensorError: {
+        const auto& error = injected.sensor_error();
+        const bool imu = error.device() == v1::DEVICE_IMU;
+        std::string off;
+        if (error.off_by() != 0.0)
+            off = fmt::format(" by {} {}", commands::shortest_text(error.off_by()), imu ? "m/s²" : "m/s");
+        if (error.grows_per_s() != 0.0)
+            off += fmt::format("{} {} {} more each second", off.empty() ? " by" : " and",
+                               commands::shortest_text(error.grows_per_s()), imu ? "m/s²" : "m/s");
+        return fmt::format("{} {} measures {} wrongly{}, for {}",
+                           enumerator_words(v1::Device_Name(error.device()), "DEVICE_"),
+                           error.unit() == v1::REDUNDANT_UNIT_B ? 'B' : 'A', imu ? "forces" : "velocities", off,
+                           seconds(error.duration_s()));
+    }
     case v1::FaultInjection::FAULT_NOT_SET: break;
     }
     return "nothing";

@@ -13,6 +13,7 @@ namespace {
 using Kind = YamlNode::Kind;
 
 constexpr double wind_mps_max = 1'000.0;           ///< what a scenario takes is less
+constexpr double sensor_off_max = 1'000.0;         ///< the same
 constexpr double duration_s_max = 7.0 * 86'400.0;  ///< chosen: no fault lasts longer than a week
 
 class PlanReader : public TeamReader {
@@ -27,9 +28,14 @@ class PlanReader : public TeamReader {
   private:
     double duration_s(const YamlNode& node, std::string_view name);
     double part(const YamlNode& node, std::string_view name, double least, double most, std::string_view unit);
+    /// A value of an enumeration; 0 when it is missing or unknown.
+    int enumerated(const YamlNode& node, std::string_view name, const google::protobuf::EnumDescriptor& all,
+                   std::string_view prefix);
     void device_fault(const YamlNode& node, v1::DeviceFault& fault);
     void uhf_loss(const YamlNode& node, v1::UhfLoss& loss);
     void wind_shift(const YamlNode& node, v1::WindShift& shift);
+    void air_shift(const YamlNode& node, v1::AirShift& shift);
+    void sensor_error(const YamlNode& node, v1::SensorError& error);
     v1::FaultInjection fault(const YamlNode& node);
     std::vector<Inject> injects(const YamlNode& root, bool of_plan);
     Inject inject(const YamlNode& node, bool of_plan);
@@ -67,19 +73,44 @@ void PlanReader::wind_shift(const YamlNode& node, v1::WindShift& shift) {
     shift.set_duration_s(duration_s(node, "duration_s"));
 }
 
+void PlanReader::air_shift(const YamlNode& node, v1::AirShift& shift) {
+    static constexpr std::array must{std::string_view{"fraction"}, std::string_view{"duration_s"}};
+    if (!table(node, "a shift of the air", must, {})) return;
+    shift.set_fraction(part(node, "fraction", -1.0, 1.0, ""));
+    shift.set_duration_s(duration_s(node, "duration_s"));
+}
+
+void PlanReader::sensor_error(const YamlNode& node, v1::SensorError& error) {
+    static constexpr std::array must{std::string_view{"device"}, std::string_view{"unit"},
+                                     std::string_view{"duration_s"}};
+    static constexpr std::array may{std::string_view{"off_by"}, std::string_view{"grows_per_s"}};
+    if (!table(node, "an error of a sensor", must, may)) return;
+    error.set_device(static_cast<v1::Device>(enumerated(node, "device", *v1::Device_descriptor(), "DEVICE_")));
+    error.set_unit(
+        static_cast<v1::RedundantUnit>(enumerated(node, "unit", *v1::RedundantUnit_descriptor(), "REDUNDANT_UNIT_")));
+    error.set_off_by(part(node, "off_by", -sensor_off_max, sensor_off_max, ""));
+    error.set_grows_per_s(part(node, "grows_per_s", -sensor_off_max, sensor_off_max, ""));
+    error.set_duration_s(duration_s(node, "duration_s"));
+    if (error.off_by() == 0.0 && error.grows_per_s() == 0.0)
+        add(node.mark, "an error of a sensor has 'off_by' or 'grows_per_s', which is not 0");
+}
+
+int PlanReader::enumerated(const YamlNode& node, std::string_view name, const google::protobuf::EnumDescriptor& all,
+                           std::string_view prefix) {
+    const YamlNode* given = node.member(name);
+    return given == nullptr ? 0 : enumerator(*given, name, all, prefix).value_or(0);
+}
+
 void PlanReader::device_fault(const YamlNode& node, v1::DeviceFault& fault) {
     static constexpr std::array must{std::string_view{"device"}, std::string_view{"unit"}, std::string_view{"kind"},
                                      std::string_view{"duration_s"}};
     static constexpr std::array may{std::string_view{"late_s"}};
     if (!table(node, "a fault of a device", must, may)) return;
-    const auto read = [&](std::string_view name, const google::protobuf::EnumDescriptor& all, std::string_view prefix) {
-        const YamlNode* given = node.member(name);
-        return given == nullptr ? 0 : enumerator(*given, name, all, prefix).value_or(0);
-    };
-    fault.set_device(static_cast<v1::Device>(read("device", *v1::Device_descriptor(), "DEVICE_")));
-    fault.set_unit(static_cast<v1::RedundantUnit>(read("unit", *v1::RedundantUnit_descriptor(), "REDUNDANT_UNIT_")));
-    fault.set_kind(
-        static_cast<v1::DeviceFaultKind>(read("kind", *v1::DeviceFaultKind_descriptor(), "DEVICE_FAULT_KIND_")));
+    fault.set_device(static_cast<v1::Device>(enumerated(node, "device", *v1::Device_descriptor(), "DEVICE_")));
+    fault.set_unit(
+        static_cast<v1::RedundantUnit>(enumerated(node, "unit", *v1::RedundantUnit_descriptor(), "REDUNDANT_UNIT_")));
+    fault.set_kind(static_cast<v1::DeviceFaultKind>(
+        enumerated(node, "kind", *v1::DeviceFaultKind_descriptor(), "DEVICE_FAULT_KIND_")));
     fault.set_duration_s(duration_s(node, "duration_s"));
     const YamlNode* late = node.member("late_s");
     if (late == nullptr) return;
@@ -95,11 +126,12 @@ v1::FaultInjection PlanReader::fault(const YamlNode& node) {
     } else {
         static constexpr std::array kinds{std::string_view{"station_outage_s"}, std::string_view{"orbiter_outage_s"},
                                           std::string_view{"system_fault_s"},   std::string_view{"computer_reset"},
-                                          std::string_view{"uhf_loss"},         std::string_view{"wind_shift"}};
+                                          std::string_view{"uhf_loss"},         std::string_view{"wind_shift"},
+                                          std::string_view{"air_shift"},        std::string_view{"sensor_error"}};
         if (!table(node, "a fault", {}, kinds)) return read;
         if (node.keys.size() != 1)
             add(node.mark, "a fault is one of these: device, station_outage_s, orbiter_outage_s, system_fault_s, "
-                           "computer_reset, uhf_loss, wind_shift");
+                           "computer_reset, uhf_loss, wind_shift, air_shift, sensor_error");
         else if (node.member("station_outage_s") != nullptr)
             read.mutable_station_outage()->set_duration_s(duration_s(node, "station_outage_s"));
         else if (node.member("orbiter_outage_s") != nullptr)
@@ -108,6 +140,10 @@ v1::FaultInjection PlanReader::fault(const YamlNode& node) {
             uhf_loss(*loss, *read.mutable_uhf_loss());
         else if (const YamlNode* shift = node.member("wind_shift"))
             wind_shift(*shift, *read.mutable_wind_shift());
+        else if (const YamlNode* air = node.member("air_shift"))
+            air_shift(*air, *read.mutable_air_shift());
+        else if (const YamlNode* sensor = node.member("sensor_error"))
+            sensor_error(*sensor, *read.mutable_sensor_error());
         else if (node.member("system_fault_s") != nullptr)
             read.mutable_system_fault()->set_duration_s(duration_s(node, "system_fault_s"));
         else if (const YamlNode* reset = node.member("computer_reset"))

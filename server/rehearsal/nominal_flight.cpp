@@ -177,6 +177,8 @@ simulation::Scenario expected_scenario(simulation::Scenario scenario) {
     scenario.orbiter_outages.clear();
     scenario.uhf_losses.clear();
     scenario.wind_shifts.clear();
+    scenario.air_shifts.clear();
+    scenario.sensor_errors.clear();
     scenario.bus_message_error_fraction = 0.0;
     scenario.radio.uhf_loss_fraction = 0.0;
     scenario.radio.uplink_loss_fraction = 0.0;

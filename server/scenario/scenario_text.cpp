@@ -202,6 +202,17 @@ const Bindings<simulation::WindShift> wind_shift_fields = {
     AEOLIS_BIND(WindShift, east_mps),
     AEOLIS_BIND(WindShift, north_mps),
 };
+const Bindings<simulation::AirShift> air_shift_fields = {
+    AEOLIS_BIND(AirShift, begin_before_entry_s),
+    AEOLIS_BIND(AirShift, duration_s),
+    AEOLIS_BIND(AirShift, fraction),
+};
+const Bindings<simulation::SensorError> sensor_error_fields = {
+    AEOLIS_BIND(SensorError, begin_before_entry_s),
+    AEOLIS_BIND(SensorError, duration_s),
+    AEOLIS_BIND(SensorError, off_by),
+    AEOLIS_BIND(SensorError, grows_per_s),
+};
 const Bindings<simulation::DeviceFault> device_fault_fields = {
     AEOLIS_BIND(DeviceFault, begin_before_entry_s),
     AEOLIS_BIND(DeviceFault, duration_s),
@@ -319,6 +330,24 @@ Result<simulation::DeviceFault> device_fault_from_message(const v1::DeviceFault&
     return fault;
 }
 
+Result<simulation::SensorError> sensor_error_from_message(const v1::SensorError& row, const std::string& name) {
+    const auto device = named<flight::Device>(row.device(), v1::Device_IsValid(row.device()), name + ".device");
+    if (!device) return device.error();
+    const auto unit = named<flight::Unit>(row.unit(), v1::RedundantUnit_IsValid(row.unit()), name + ".unit");
+    if (!unit) return unit.error();
+    simulation::SensorError error;
+    error.device = *device;
+    error.unit = *unit;
+    read(row, sensor_error_fields, error);
+    return error;
+}
+
+void write_sensor_error(const simulation::SensorError& error, v1::SensorError& row) {
+    row.set_device(static_cast<v1::Device>(static_cast<int>(error.device) + 1));
+    row.set_unit(static_cast<v1::RedundantUnit>(static_cast<int>(error.unit) + 1));
+    write(error, sensor_error_fields, row);
+}
+
 /// What begins with the next cycle and lasts.
 template <typename Spell, typename Message>
 Result<simulation::Fault> spell_now(const Message& message, const Bindings<Spell>& fields, const char* name) {
@@ -348,10 +377,18 @@ Result<simulation::Fault> read_fault(const v1::FaultInjection& message) {
         return spell_now(message.orbiter_outage(), orbiter_outage_fields, "orbiter_outage");
     case v1::FaultInjection::kUhfLoss: return spell_now(message.uhf_loss(), uhf_loss_fields, "uhf_loss");
     case v1::FaultInjection::kWindShift: return spell_now(message.wind_shift(), wind_shift_fields, "wind_shift");
+    case v1::FaultInjection::kAirShift: return spell_now(message.air_shift(), air_shift_fields, "air_shift");
+    case v1::FaultInjection::kSensorError: {
+        if (message.sensor_error().begin_before_entry_s() != 0.0)
+            return Error{"sensor_error.begin_before_entry_s: it begins now"};
+        auto error = sensor_error_from_message(message.sensor_error(), "sensor_error");
+        if (!error) return error.error();
+        return simulation::Fault{*error};
+    }
     case v1::FaultInjection::FAULT_NOT_SET: break;
     }
-    return Error{"the injection says nothing: device_fault, system_fault, computer_reset, "
-                 "station_outage, orbiter_outage, uhf_loss or wind_shift is wanted"};
+    return Error{"the injection says nothing: device_fault, system_fault, computer_reset, station_outage, "
+                 "orbiter_outage, uhf_loss, wind_shift, air_shift or sensor_error is wanted"};
 }
 
 void write_device_fault(const simulation::DeviceFault& fault, v1::DeviceFault& row) {
@@ -518,6 +555,12 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
         read(row, orbiter_outage_fields, scenario.orbiter_outages.emplace_back());
     for (const auto& row : message.uhf_losses()) read(row, uhf_loss_fields, scenario.uhf_losses.emplace_back());
     for (const auto& row : message.wind_shifts()) read(row, wind_shift_fields, scenario.wind_shifts.emplace_back());
+    for (const auto& row : message.air_shifts()) read(row, air_shift_fields, scenario.air_shifts.emplace_back());
+    for (int i = 0; i < message.sensor_errors_size(); ++i) {
+        const auto error = sensor_error_from_message(message.sensor_errors(i), fmt::format("sensor_errors[{}]", i));
+        if (!error) return error.error();
+        scenario.sensor_errors.push_back(*error);
+    }
     const auto impossible = simulation::impossible_values(scenario);
     if (!impossible.empty()) return Error{joined(impossible, "")};
     return scenario;
@@ -534,6 +577,8 @@ Result<simulation::Fault> fault_from_message(const v1::FaultInjection& message, 
     with_it_alone.orbiter_outages.clear();
     with_it_alone.uhf_losses.clear();
     with_it_alone.wind_shifts.clear();
+    with_it_alone.air_shifts.clear();
+    with_it_alone.sensor_errors.clear();
     if (const auto* device = std::get_if<simulation::DeviceFault>(&*fault)) with_it_alone.device_faults = {*device};
     if (const auto* system = std::get_if<simulation::SystemFault>(&*fault)) with_it_alone.system_faults = {*system};
     if (const auto* reset = std::get_if<simulation::ComputerReset>(&*fault)) with_it_alone.computer_resets = {*reset};
@@ -542,6 +587,8 @@ Result<simulation::Fault> fault_from_message(const v1::FaultInjection& message, 
         with_it_alone.orbiter_outages = {*orbiter};
     if (const auto* loss = std::get_if<simulation::UhfLoss>(&*fault)) with_it_alone.uhf_losses = {*loss};
     if (const auto* shift = std::get_if<simulation::WindShift>(&*fault)) with_it_alone.wind_shifts = {*shift};
+    if (const auto* air = std::get_if<simulation::AirShift>(&*fault)) with_it_alone.air_shifts = {*air};
+    if (const auto* sensor = std::get_if<simulation::SensorError>(&*fault)) with_it_alone.sensor_errors = {*sensor};
     if (const auto found = simulation::impossible_values(with_it_alone); !found.empty()) return Error{found.front()};
     return fault;
 }
@@ -596,6 +643,8 @@ v1::Scenario scenario_to_message(const Scenario& scenario) {
         write(outage, orbiter_outage_fields, *message.add_orbiter_outages());
     for (const auto& loss : scenario.uhf_losses) write(loss, uhf_loss_fields, *message.add_uhf_losses());
     for (const auto& shift : scenario.wind_shifts) write(shift, wind_shift_fields, *message.add_wind_shifts());
+    for (const auto& shift : scenario.air_shifts) write(shift, air_shift_fields, *message.add_air_shifts());
+    for (const auto& error : scenario.sensor_errors) write_sensor_error(error, *message.add_sensor_errors());
     return message;
 }
 

@@ -109,7 +109,7 @@ Air Atmosphere::at(double altitude_m) const {
     const auto below = static_cast<std::size_t>(place);
     const double part = place - static_cast<double>(below);
     const double log_density = log_density_[below] + part * (log_density_[below + 1] - log_density_[below]);
-    return {std::exp(log_density) * departure(altitude_m),
+    return {std::exp(log_density) * departure(altitude_m) * shift_factor_,
             speed_of_sound_mps_[below] + part * (speed_of_sound_mps_[below + 1] - speed_of_sound_mps_[below])};
 }
 

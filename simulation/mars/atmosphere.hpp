@@ -31,6 +31,8 @@ class Atmosphere {
                Random random);
 
     Air at(double altitude_m) const;
+    /// From now on the air is so many times as dense at all heights.
+    void shift(double factor) { shift_factor_ = factor; }
     /// The case's departure: at all heights alike, and the phase of its wave over height.
     double departure_fraction() const { return departure_fraction_; }
     double wave_phase_rad() const { return wave_phase_rad_; }
@@ -42,6 +44,7 @@ class Atmosphere {
     std::array<double, rows> log_density_{};
     std::array<double, rows> speed_of_sound_mps_{};
     double departure_fraction_ = 0.0, wave_fraction_ = 0.0, wave_phase_rad_ = 0.0;
+    double shift_factor_ = 1.0;
     double aloft_growth_ = 0.0;  ///< of the departure, from 50 to 65 km
 };
 

@@ -4,11 +4,6 @@
 #include "simulation/mars/mars.hpp"
 
 namespace aeolis::simulation {
-namespace {
-
-constexpr double reading_s = 1.0 / 200.0;  // [facts]
-
-}  // namespace
 
 Imu::Imu(const Dispersions& dispersions, Random random, Random mounting)
     : accelerometer_bias_mps2_(dispersions.imu_bias_mps2 * vector3(random.normal3())),

@@ -16,6 +16,8 @@ namespace aeolis::simulation {
 /// scenario's deviation about each axis. The unit sits at the centre of mass.
 class Imu {
   public:
+    static constexpr double reading_s = 1.0 / 200.0;  // [facts]
+
     /// `mounting` draws the misalignment and the gyros' scale errors.
     Imu(const Dispersions& dispersions, Random random, Random mounting);
 

@@ -13,8 +13,8 @@
 #include "simulation/vehicle/bridle.hpp"
 #include "simulation/vehicle/configuration.hpp"
 #include "simulation/vehicle/engines.hpp"
-#include "simulation/vehicle/rigid_body.hpp"
 #include "simulation/vehicle/parachute.hpp"
+#include "simulation/vehicle/rigid_body.hpp"
 #include "simulation/vehicle/separated_bodies.hpp"
 #include "simulation/vehicle/stage_and_rover.hpp"
 #include "simulation/vehicle/thrusters.hpp"
@@ -54,6 +54,7 @@ class Vehicle {
                  bool pay_out_bridle, double now_s);
     /// From now on added to the wind at all heights.
     void shift_wind(double east_mps, double north_mps) { wind_.shift(east_mps, north_mps); }
+    void shift_air(double factor) { atmosphere_.shift(factor); }
     /// Integrates one step of at most 5 ms.
     void step(double now_s, double step_s);
     /// Advances the jettisoned bodies by a tick of 1/64 s. Call after the vehicle has flown it.

@@ -143,6 +143,28 @@ TEST_CASE("what is believed begins as the truth, and keeps what it says itself",
     CHECK_FALSE(scenario_from_text(least, "s")->believed);
 }
 
+TEST_CASE("faults of air and sensors are read, written and read again, and one that cannot be is refused",
+          "[scenario]") {
+    const auto scenario = scenario_from_text(
+        least + "air_shifts { begin_before_entry_s: -60 duration_s: 10 fraction: -0.1 } sensor_errors { device: "
+                "DEVICE_RADAR unit: REDUNDANT_UNIT_B begin_before_entry_s: -300 duration_s: 20 grows_per_s: 0.02 }",
+        "s");
+    INFO((scenario ? "" : scenario.error().message));
+    REQUIRE(scenario);
+    REQUIRE(scenario->sensor_errors.size() == 1);
+    CHECK(scenario->sensor_errors[0].device == flight::Device::radar);
+    CHECK(scenario->sensor_errors[0].unit == flight::Unit::b);
+    CHECK(scenario->sensor_errors[0].grows_per_s == 0.02);
+    CHECK(scenario->air_shifts.at(0).fraction == -0.1);
+    CHECK(scenario_to_text(*scenario_from_text(scenario_to_text(*scenario), "again")) == scenario_to_text(*scenario));
+    CHECK_THAT(error_of(least + "sensor_errors { unit: REDUNDANT_UNIT_A duration_s: 3 }"),
+               Catch::Contains("sensor_errors[0].device: missing"));
+    CHECK_THAT(error_of(least + "sensor_errors { device: DEVICE_UHF unit: REDUNDANT_UNIT_A duration_s: 3 }"),
+               Catch::Contains("sensor_errors[0].device: only the IMU and the radar"));
+    CHECK_THAT(error_of(least + "air_shifts { duration_s: 3 fraction: 7 }"),
+               Catch::Contains("air_shifts[0].fraction: 7"));
+}
+
 TEST_CASE("a scenario file that cannot be read is named", "[scenario]") {
     CHECK(scenario_from_file("/nowhere/x.textproto").error().message == "/nowhere/x.textproto: cannot be opened");
     CHECK(scenario_from_file("/tmp").error().message == "/tmp: is a directory, not a scenario");

@@ -8,6 +8,7 @@
 #include "tests/simulation/gale.hpp"
 #include "tests/simulation/judged.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/gnc_venue.hpp"
 #include "tests/support/recorded_events.hpp"
 #include "tests/support/telecommands.hpp"
 
@@ -283,6 +284,67 @@ TEST_CASE("a wind that shifts carries the vehicle along, from then on and for as
     flown_again.inject(WindShift{0.0, 10.0, 0.0, 50.0});
     while (flown_again.sclk() < scenario.entry_sclk + 90.0) flown_again.step();
     CHECK(flown_again.truth().p_MoB_M_m == windy.truth().p_MoB_M_m);
+}
+
+TEST_CASE("air that is injected brakes otherwise while it lasts", "[simulation][faults]") {
+    const auto scenario = tests::gale_scenario(60.0);
+    Landing calm{scenario, 1}, thin{scenario, 1};
+    const auto speed_mps = [](const Landing& landing) {
+        const auto v = landing.truth().v_MB_M_mps;
+        return std::hypot(v[0], v[1], v[2]);
+    };
+    const auto fly_to = [&](double e_s) {
+        while (calm.sclk() < scenario.entry_sclk + e_s) calm.step(), thin.step();
+    };
+    fly_to(70.0);
+    const double before_mps = speed_mps(calm);
+    CHECK(speed_mps(thin) == before_mps);
+    thin.inject(AirShift{0.0, 5.0, -0.2});
+    fly_to(75.0);
+    const double lost_mps = before_mps - speed_mps(calm), lost_in_thin_mps = before_mps - speed_mps(thin);
+    CHECK(lost_in_thin_mps == Approx(0.8 * lost_mps).epsilon(0.03));
+    fly_to(76.0);  // it is over: as dense again
+    CHECK(speed_mps(thin) < before_mps - lost_in_thin_mps);
+}
+
+TEST_CASE("an inertial unit that is off moves what is navigated, by the square of the time, and the truth not at all",
+          "[simulation][faults]") {
+    const auto scenario = tests::undisturbed_scenario(700.0);
+    tests::GncVenue sound(scenario, 1);
+    auto off = scenario;
+    off.sensor_errors = {{flight::Device::imu, flight::Unit::a, -10.0, 20.0, 0.05, 0.0},
+                         {flight::Device::imu, flight::Unit::b, -10.0, 20.0, 9.0, 0.0}};
+    tests::GncVenue wrong(off, 1);
+    const auto apart_m = [&] {
+        const auto a = sound.told().p_MoB_M_m, b = wrong.told().p_MoB_M_m;
+        return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+    };
+    const auto fly_to = [&](double e_s) {
+        while (sound.world().truth().e_s < e_s) sound.step(), wrong.step();
+    };
+    fly_to(9.0);
+    CHECK(apart_m() == 0.0);
+    CHECK(sound.world().truth().p_MoB_M_m == wrong.world().truth().p_MoB_M_m);
+    fly_to(30.0);
+    // Each axis is off by as much: √3 of it, while the unit hardly turns.
+    const double expected_m = 0.5 * std::sqrt(3.0) * 0.05 * 20.0 * 20.0;
+    CHECK(apart_m() > 0.5 * expected_m);
+    CHECK(apart_m() < 1.5 * expected_m);
+}
+
+TEST_CASE("a radar whose velocities are off or drift leads the vehicle with it", "[simulation][faults]") {
+    const auto touchdown_mps = [](double off_by, double grows_per_s) {
+        auto scenario = tests::undisturbed_scenario();
+        if (off_by != 0.0 || grows_per_s != 0.0)
+            scenario.sensor_errors = {{flight::Device::radar, flight::Unit::a, -250.0, 300.0, off_by, grows_per_s}};
+        tests::GncVenue venue(scenario, 1);
+        venue.run();
+        REQUIRE(venue.world().touchdown());
+        return venue.world().touchdown()->vertical_mps;
+    };
+    const double sound_mps = touchdown_mps(0.0, 0.0);
+    CHECK(touchdown_mps(0.1, 0.0) == Approx(sound_mps + 0.1).margin(0.05));
+    CHECK(touchdown_mps(0.0, 0.001) > sound_mps + 0.05);
 }
 
 TEST_CASE("while the station is out nothing of what reaches Earth reaches ground; then each link is told as it is",

@@ -145,6 +145,21 @@ TEST_CASE("an inject of the library is used by its name, and each part that stan
               .find("uhf_losses[0].fraction: 0.95") != std::string::npos);
     CHECK(of_inject("when: by hand, fault: {wind_shift: {east_mps: 3, duration_s: 3}}").find("lacks 'north_mps'") !=
           std::string::npos);
+    CHECK(of_inject("when: by hand, fault: {air_shift: {fraction: -0.9, duration_s: 3}}")
+              .find("air_shifts[0].fraction: -0.9 is outside -0.5") != std::string::npos);
+    CHECK(of_inject("when: by hand, fault: {sensor_error: {device: pyro, unit: a, off_by: 1, duration_s: 3}}")
+              .find("only the IMU and the radar") != std::string::npos);
+    CHECK(of_inject("when: by hand, fault: {sensor_error: {device: imu, unit: a, duration_s: 3}}")
+              .find("has 'off_by' or 'grows_per_s'") != std::string::npos);
+    const auto off = read("  - {inject: a, title: A, when: by hand, fault: {sensor_error: {device: imu, unit: b, "
+                          "off_by: 0.05, grows_per_s: 0.01, duration_s: 60}}}\n"
+                          "  - {inject: b, title: B, when: by hand, fault: {air_shift: {fraction: -0.1, duration_s: "
+                          "600}}}\n");
+    INFO(off.findings_text());
+    REQUIRE(off.plan);
+    CHECK(text_of(off.plan->injects.at(0).fault) ==
+          "imu B measures forces wrongly by 0.05 m/s² and 0.01 m/s² more each second, for 60 s");
+    CHECK(text_of(off.plan->injects.at(1).fault) == "the air is 10 % thinner, for 600 s");
     const auto of_library = [](const std::string& inject) {
         const auto read_one = read_library("library: injects\nsource: S\ninjects:\n  - " + inject + "\n",
                                            "injects.yaml", tests::shipped_dictionary(), {});

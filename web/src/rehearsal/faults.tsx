@@ -22,7 +22,12 @@ const STATION = 'the ground station';
 const ORBITERS = 'the orbiters';
 const UHF_LOSS = 'octets on UHF';
 const WIND = 'the wind';
-const OTHERS = [SYSTEM, COMPUTER, STATION, ORBITERS, UHF_LOSS, WIND];
+const AIR = 'the air';
+const OTHERS = [SYSTEM, COMPUTER, STATION, ORBITERS, UHF_LOSS, WIND, AIR];
+/** What a sensor can be besides what any device can. */
+const WRONG = 'MEASURES_WRONGLY';
+const SENSORS = ['DEVICE_IMU', 'DEVICE_RADAR'];
+const unitOf = (device: string): string => (device === 'DEVICE_IMU' ? 'm/s²' : 'm/s');
 const deviceWords = (name: string): string => words(name.replace('DEVICE_', ''));
 const kindWords = (name: string): string => words(name.replace('DEVICE_FAULT_KIND_', ''));
 
@@ -33,14 +38,19 @@ const seconds = signal('10');
 const percent = signal('20');
 const east = signal('20');
 const north = signal('0');
+const denser = signal('10');
+const offBy = signal('0.1');
+const grows = signal('0');
 
 /** Of what is no unit of a device: how much of it. */
 interface Amount {
   fraction: number;
   east_mps: number;
   north_mps: number;
+  off_by: number;
+  grows_per_s: number;
 }
-const NONE: Amount = { fraction: 0, east_mps: 0, north_mps: 0 };
+const NONE: Amount = { fraction: 0, east_mps: 0, north_mps: 0, off_by: 0, grows_per_s: 0 };
 
 /** The fault as the server expects it. */
 export function injectionOf(device: string, of_unit: string, how: string, duration_s: number, amount = NONE): Fault {
@@ -50,7 +60,11 @@ export function injectionOf(device: string, of_unit: string, how: string, durati
   if (device === ORBITERS) return { orbiter_outage: { duration_s } };
   if (device === UHF_LOSS) return { uhf_loss: { duration_s, fraction: amount.fraction } };
   if (device === WIND) return { wind_shift: { duration_s, east_mps: amount.east_mps, north_mps: amount.north_mps } };
-  return { device_fault: { device, unit: `REDUNDANT_UNIT_${of_unit}`, kind: how, duration_s } };
+  if (device === AIR) return { air_shift: { duration_s, fraction: amount.fraction } };
+  const unit = `REDUNDANT_UNIT_${of_unit}`;
+  const { off_by, grows_per_s } = amount;
+  if (how === WRONG) return { sensor_error: { device, unit, duration_s, off_by, grows_per_s } };
+  return { device_fault: { device, unit, kind: how, duration_s } };
 }
 
 export function faultWords(fault: Fault): string {
@@ -63,9 +77,25 @@ export function faultWords(fault: Fault): string {
   if (loss) return `UHF loses ${+(100 * loss.fraction).toFixed(1)} % of its octets at least, for ${loss.duration_s} s`;
   if (wind)
     return `${WIND} changes by ${wind.east_mps} m/s to the east and ${wind.north_mps} m/s to the north, for ${wind.duration_s} s`;
+  if (fault.air_shift) {
+    const { fraction, duration_s } = fault.air_shift;
+    const percent = +(100 * Math.abs(fraction)).toFixed(1);
+    return `${AIR} is ${percent} % ${fraction < 0 ? 'thinner' : 'denser'}, for ${duration_s} s`;
+  }
+  if (fault.sensor_error) return sensorWords(fault.sensor_error);
   return system ? `${SYSTEM}, for ${system.duration_s} s` : `${COMPUTER} starts anew`;
 }
 
+function sensorWords({ device, unit, duration_s, off_by, grows_per_s }: NonNullable<Fault['sensor_error']>): string {
+  const amounts = [
+    ...(off_by ? [`${off_by} ${unitOf(device)}`] : []),
+    ...(grows_per_s ? [`${grows_per_s} ${unitOf(device)} more each second`] : []),
+  ];
+  const measures = device === 'DEVICE_IMU' ? 'forces' : 'velocities';
+  return `${deviceWords(device)} ${unit.at(-1)} measures ${measures} wrongly by ${amounts.join(' and ')}, for ${duration_s} s`;
+}
+
+const measuresWrongly = () => SENSORS.includes(what.value) && kind.value === WRONG;
 const hasLength = () => what.value !== COMPUTER;
 const within = (text: string, least: number, most: number): boolean =>
   text.trim() !== '' && Number(text) >= least && Number(text) <= most;
@@ -75,13 +105,20 @@ export function badNumbers(): string {
   if (what.value === UHF_LOSS && !within(percent.value, 0.1, 90)) return 'from 0.1 to 90 % of the octets';
   if (what.value === WIND && !(within(east.value, -100, 100) && within(north.value, -100, 100)))
     return 'a wind of −100 to 100 m/s';
+  if (what.value === AIR && !within(denser.value, -50, 100)) return 'from 50 % thinner (−50) to 100 % denser';
+  if (measuresWrongly()) {
+    if (!(within(offBy.value, -100, 100) && within(grows.value, -100, 100))) return 'amounts of −100 to 100';
+    if (Number(offBy.value) === 0 && Number(grows.value) === 0) return 'an amount that is not 0';
+  }
   return '';
 }
 
 /** The fault that the fields say. */
 export const pickedFault = (): Fault =>
   injectionOf(what.value, unit.value, kind.value, Number(seconds.value), {
-    fraction: Number(percent.value) / 100,
+    fraction: Number(what.value === AIR ? denser.value : percent.value) / 100,
+    off_by: Number(offBy.value),
+    grows_per_s: Number(grows.value),
     east_mps: Number(east.value),
     north_mps: Number(north.value),
   });
@@ -113,7 +150,10 @@ export function FaultFields() {
         <select
           value={what.value}
           data-testid="fault-what"
-          onChange={(event) => (what.value = event.currentTarget.value)}
+          onChange={(event) => {
+            what.value = event.currentTarget.value;
+            if (kind.value === WRONG && !SENSORS.includes(what.value)) kind.value = KINDS[0] ?? '';
+          }}
         >
           {DEVICES.map((name) => (
             <option key={name} value={name}>
@@ -153,12 +193,18 @@ export function FaultFields() {
                 {kindWords(name)}
               </option>
             ))}
+            {SENSORS.includes(what.value) && <option value={WRONG}>{words(WRONG)}</option>}
           </select>
         </label>
       )}
       {what.value === UHF_LOSS && <NumberField of={percent} words="lose" unit="%" id="fault-percent" />}
       {what.value === WIND && <NumberField of={east} words="by" unit="m/s east" id="fault-east" />}
       {what.value === WIND && <NumberField of={north} words="and" unit="m/s north" id="fault-north" />}
+      {what.value === AIR && <NumberField of={denser} words="by" unit="% denser" id="fault-denser" />}
+      {measuresWrongly() && <NumberField of={offBy} words="by" unit={unitOf(what.value)} id="fault-off" />}
+      {measuresWrongly() && (
+        <NumberField of={grows} words="and" unit={`${unitOf(what.value)} more each second`} id="fault-grows" />
+      )}
       {hasLength() && <NumberField of={seconds} words="for" unit="s" id="fault-seconds" />}
     </>
   );

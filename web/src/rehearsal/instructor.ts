@@ -17,6 +17,8 @@ export interface Fault {
   orbiter_outage?: { duration_s: number };
   uhf_loss?: { duration_s: number; fraction: number };
   wind_shift?: { duration_s: number; east_mps: number; north_mps: number };
+  air_shift?: { duration_s: number; fraction: number };
+  sensor_error?: { device: string; unit: string; duration_s: number; off_by?: number; grows_per_s?: number };
   computer_reset?: boolean;
 }
 export interface Intervention {

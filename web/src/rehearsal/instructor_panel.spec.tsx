@@ -128,7 +128,7 @@ describe('the instructor’s panel', () => {
     expect(shown('instructor-message')?.textContent).toContain('not possible for this device');
   });
   it('has words for what happens to orbiters, link and wind, and asks for it with its amount', () => {
-    const amount = { fraction: 0.2, east_mps: 20, north_mps: -5 };
+    const amount = { fraction: 0.2, east_mps: 20, north_mps: -5, off_by: 0, grows_per_s: 0 };
     expect(['the orbiters', 'octets on UHF', 'the wind'].map((each) => injectionOf(each, 'A', '', 60, amount))).toEqual(
       [
         { orbiter_outage: { duration_s: 60 } },
@@ -142,6 +142,27 @@ describe('the instructor’s panel', () => {
       'no orbiter relays, for 60 s',
       'UHF loses 20 % of its octets at least, for 60 s',
       'the wind changes by 20 m/s to the east and -5 m/s to the north, for 60 s',
+    ]);
+  });
+  it('has words for air and for sensors that measure wrongly, and asks for them with their amounts', () => {
+    const amount = { fraction: -0.1, east_mps: 0, north_mps: 0, off_by: 0.5, grows_per_s: 0.25 };
+    const air = injectionOf('the air', 'A', '', 60, amount);
+    const imu = injectionOf('DEVICE_IMU', 'B', 'MEASURES_WRONGLY', 9, amount);
+    const radar = injectionOf('DEVICE_RADAR', 'A', 'MEASURES_WRONGLY', 9, { ...amount, off_by: 0 });
+    expect(air).toEqual({ air_shift: { duration_s: 60, fraction: -0.1 } });
+    expect(imu).toEqual({
+      sensor_error: {
+        device: 'DEVICE_IMU',
+        unit: 'REDUNDANT_UNIT_B',
+        duration_s: 9,
+        off_by: 0.5,
+        grows_per_s: 0.25,
+      },
+    });
+    expect([air, imu, radar].map(faultWords)).toEqual([
+      'the air is 10 % thinner, for 60 s',
+      'imu B measures forces wrongly by 0.5 m/s² and 0.25 m/s² more each second, for 9 s',
+      'radar A measures velocities wrongly by 0.25 m/s more each second, for 9 s',
     ]);
   });
   it('injects what is chosen from the library, after showing what it does and what is to be done', async () => {
