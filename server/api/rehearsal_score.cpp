@@ -75,7 +75,7 @@ class Judge {
             "the rest is the team's, over what there was to judge: if there was nothing of a kind, the others count "
             "more, and if nothing was expected of anybody, the rest is not given. What nobody could see is not judged, "
             "nor "
-            "what there was no time for, nor what people did once it was over. "
+            "what there was no time for, nor what fell into a jump of time, nor what people did once it was over. "
             "What comes later than its limit earns less, and after twice the limit nothing; an alarm's acknowledgement "
             "counts in full within {:.0f} s and not at all after {:.0f} s. A line of the log is found by its words, "
             "and "
@@ -89,6 +89,7 @@ class Judge {
         const auto& run = facts_.report.run();
         TeamCase judged{rubric_, facts_.plan ? &*facts_.plan : nullptr, facts_.interventions, acts_};
         judged.light_time_s = run.light_time_s();
+        judged.jumps = facts_.jumps;
         if (run.has_forked_from()) judged.from_e_s = run.forked_from().e_s();
         if (facts_.end) judged.until_e_s = archive::sclk_at_ert(run, *facts_.end).seconds - run.entry_sclk();
         return judged;
@@ -332,6 +333,9 @@ Result<ScoreFacts> score_facts(archive::Reader& reader, v1::AsFlownReport report
     auto interventions = all_interventions(reader, run);
     if (!interventions) return interventions.error();
     facts.interventions = std::move(*interventions);
+    auto jumps = reader.jumps(run);
+    if (!jumps) return jumps.error();
+    facts.jumps = std::move(*jumps);
     if (auto done = add_room(reader, run, facts); !done) return done.error();
     if (auto done = add_heard(reader, run, facts); !done) return done.error();
     if (auto done = add_plan(reader, run, dictionary, facts); !done) return done.error();

@@ -26,6 +26,7 @@ struct ScoreFacts {
     std::vector<v1::Item> heard;   ///< event reports and tones as received, recorded ones too
     std::optional<Ert> end;        ///< of the run: what people did from then on does not count
     std::vector<v1::Intervention> interventions;
+    std::vector<v1::Jump> jumps;  ///< of time
     std::optional<instruction::InjectPlan> plan;
 };
 

@@ -194,10 +194,18 @@ class TeamJudge {
                               double until_s) {
         if (!sign) return "no sign of it was received";
         if (sign->e_s + expectation.within_s > judged_.until_e_s) return "the run ended before";
+        if (jumped(sign->e_s, sign->e_s + expectation.within_s)) return "the rehearsal jumped ahead meanwhile";
         if (expectation.act == Act::acknowledge)
             return judge_acknowledgement(expectation, felt_s, until_s) ? "" : "no such alarm was raised by it";
         judge_expectation(expectation, *sign);
         return "";
+    }
+
+    /// Whether the rehearsal jumped between two times at which word reached Earth.
+    bool jumped(double from_s, double to_s) const {
+        return std::ranges::any_of(judged_.jumps, [&](const v1::Jump& jump) {
+            return jump.from_e_s() - judged_.light_time_s < to_s && jump.to_e_s() - judged_.light_time_s > from_s;
+        });
     }
 
     v1::ScoreFault& tell_fault(const v1::Intervention& intervention, const Handling& handling, double felt_s,
@@ -314,6 +322,7 @@ class TeamJudge {
             const auto& alarm = acts_.raised.all[i];
             const bool of_fault = alarm.e_s >= felt_s - early_s && alarm.e_s <= until_s - signs_until_s + follows_s;
             if (!of_fault || !judged_alarms_.insert(i).second) continue;
+            if (jumped(alarm.e_s, alarm.e_s + judged_.rubric.alarm_within_s)) continue;
             if (many++ == 0) first_s = alarm.e_s;
             if (alarm.acknowledged) ++acknowledged;
             sum += promptness(alarm);
@@ -332,6 +341,7 @@ class TeamJudge {
         for (std::size_t i = 0; i < acts_.raised.all.size(); ++i) {
             const auto& alarm = acts_.raised.all[i];
             if (judged_alarms_.contains(i) || alarm.e_s < judged_.from_e_s) continue;
+            if (jumped(alarm.e_s, alarm.e_s + judged_.rubric.alarm_within_s)) continue;
             add(Skill::detection, fmt::format("acknowledges {} {}", in_words(alarm.name), alarm.limit), alarm.e_s,
                 promptness(alarm), acknowledgement_words(alarm));
         }
@@ -343,6 +353,7 @@ class TeamJudge {
             if (heard == acts_.heard.end() || heard->second.empty()) continue;  // nobody could know of it
             const double heard_s = *std::ranges::min_element(heard->second);
             if (heard_s < judged_.from_e_s || heard_s + within_s > judged_.until_e_s) continue;
+            if (jumped(heard_s, heard_s + within_s)) continue;
             ++judging_;
             judge_expectation({Skill::communication, Act::note, words, within_s}, {heard_s, after});
             auto& point = judged_points_.points.back().point;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "aeolis/v1/run.pb.h"
 #include "aeolis/v1/score.pb.h"
 #include "server/api/score_acts.hpp"
 #include "server/instruction/inject_plan.hpp"
@@ -19,6 +20,7 @@ struct TeamCase {
     const ScoreActs& acts;
     double from_e_s = -std::numeric_limits<double>::infinity();  ///< of a fork: what was done before is another run's
     double until_e_s = std::numeric_limits<double>::infinity();  ///< what takes longer than the run is not judged
+    std::vector<v1::Jump> jumps{};                               ///< of time, in which nobody could act
     double light_time_s = 0.0;  ///< an outage of the station is felt on Earth itself, not a light time later
 };
 

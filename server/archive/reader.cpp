@@ -208,6 +208,21 @@ Result<v1::InstructorPlan> Reader::instructor_plan(RunId run) {
     }
 }
 
+Result<std::vector<v1::Jump>> Reader::jumps(RunId run) {
+    auto rows = state_->query("SELECT request FROM requests WHERE run = ? AND request LIKE '%jump%' ORDER BY position");
+    if (!rows) return rows.error();
+    auto& row = **rows;
+    row.bind(1, std::int64_t{run.value});
+    std::vector<v1::Jump> jumps;
+    for (;;) {
+        auto found = row.step();
+        if (!found) return found.error();
+        if (!*found) return jumps;
+        const auto kept = kept_request(std::string(row.text(0)));
+        if (kept.has_jump()) jumps.push_back(kept.jump());
+    }
+}
+
 Result<std::string> Reader::scenario_text(RunId run) {
     const auto instant = state_->instant(run);
     if (!instant) return instant.error();

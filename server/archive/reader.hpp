@@ -320,6 +320,8 @@ class Reader {
     Result<v1::InterventionList> interventions(RunId run, const InterventionQuery& query = {});
     /// The instructor's plan that the run began with; no text: it has none.
     Result<v1::InstructorPlan> instructor_plan(RunId run);
+    /// The jumps of time of a rehearsal, in order.
+    Result<std::vector<v1::Jump>> jumps(RunId run);
     /// The timeline: planned times, firings as far as known, and predictions from what was known.
     Result<v1::TimepointList> timepoints(RunId run, const TimepointQuery& query = {});
     Result<v1::RecordingSummary> recording(RunId run);

@@ -21,7 +21,8 @@ bool repeat(Rehearsal& rehearsal, const v1::KeptRequest& kept,
         return !kept.intervention().has_fault() || rehearsal.inject(kept.intervention().fault()).ok();
     case v1::KeptRequest::kFork: return kept.fork().seed() == 0 || rehearsal.redraw(kept.fork().seed()).ok();
     case v1::KeptRequest::kEnsemble:
-    case v1::KeptRequest::kPlan: return true;  // of ground and of its instructor, not of the landing
+    case v1::KeptRequest::kPlan:
+    case v1::KeptRequest::kJump: return true;  // of ground and of its instructor, not of the landing
     case v1::KeptRequest::KEPT_NOT_SET: break;
     }
     return false;

@@ -90,6 +90,11 @@ Result<void> RehearsalManager::check_form(const v1::RehearsalControl& control) c
     case v1::RehearsalControl::kPause:
     case v1::RehearsalControl::kInject: return {};
     case v1::RehearsalControl::kPace: return check_pace(control.pace());
+    case v1::RehearsalControl::kJump:
+        return seconds_from_entry(control.jump())
+                   ? Result<void>{}
+                   : Result<void>{Error{fmt::format("jump: '{}' is no time from entry, such as E-0:47:00",
+                                                    control.jump().substr(0, 40))}};
     case v1::RehearsalControl::kStop:
         return control.stop() ? Result<void>{} : Result<void>{Error{"stop: false asks for nothing"}};
     case v1::RehearsalControl::kNote: return check_note(control.note().text(), control.note().by());
@@ -98,7 +103,7 @@ Result<void> RehearsalManager::check_form(const v1::RehearsalControl& control) c
         return {};
     case v1::RehearsalControl::ACTION_NOT_SET: break;
     }
-    return Error{"the control says nothing: start, pause, pace, stop, inject, note or plan is wanted"};
+    return Error{"the control says nothing: start, pause, pace, jump, stop, inject, note or plan is wanted"};
 }
 
 Result<simulation::Scenario> RehearsalManager::scenario_of(const v1::StartRehearsal& request) const {
@@ -239,6 +244,7 @@ Result<void> RehearsalManager::order_of_run(const v1::RehearsalControl& control)
     switch (control.action_case()) {
     case v1::RehearsalControl::kPause: return runner_->order(PauseRun{control.pause()});
     case v1::RehearsalControl::kPace: return runner_->order(PaceRun{control.pace()});
+    case v1::RehearsalControl::kJump: return runner_->order(JumpRun{seconds_from_entry(control.jump()).value_or(0.0)});
     case v1::RehearsalControl::kStop: return runner_->order(StopRun{});
     case v1::RehearsalControl::kInject: *intervene.intervention.mutable_fault() = control.inject(); break;
     case v1::RehearsalControl::kNote: *intervene.intervention.mutable_note() = control.note(); break;

@@ -3,6 +3,7 @@
 
 #include "commands/shares.hpp"
 #include "commands/timeline_change.hpp"
+#include "common/entry_time.hpp"
 #include "server/archive/items.hpp"
 #include "server/archive/kept_request.hpp"
 #include "server/base/wall_clock.hpp"
@@ -15,6 +16,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <tuple>
 
 namespace aeolis::server {
 
@@ -40,7 +42,7 @@ constexpr const char* over_reason = "the run is over: nothing listens on board";
 /// Of orders that set one thing, the last of a kind counts.
 bool last_counts(const RunOrder& order) {
     return std::holds_alternative<PauseRun>(order) || std::holds_alternative<PaceRun>(order) ||
-           std::holds_alternative<StopRun>(order);
+           std::holds_alternative<JumpRun>(order) || std::holds_alternative<StopRun>(order);
 }
 
 /// Whether a fork repeats a request of its parent; at the instant itself its plan, and a fork of the parent, whose seed
@@ -115,8 +117,15 @@ Result<void> RehearsalRunner::order(RunOrder order) {
 }
 
 std::string RehearsalRunner::refusal_of(const RunOrder& order) const {
+    if (const auto* jump = std::get_if<JumpRun>(&order)) {
+        if (over_ || stop_) return over_reason;
+        if (!(jump->to_e_s > now_e_s_)) return fmt::format("jump: {} has passed", from_entry_text(jump->to_e_s));
+        return {};
+    }
     if (const auto* commands = std::get_if<SendCommands>(&order)) {
         if (over_ || stop_) return over_reason;
+        if (const double to_e_s = jumps_to_e_s_; to_e_s != no_jump && !commands->only_check)
+            return fmt::format("the rehearsal jumps to {}: send it when it holds there", from_entry_text(to_e_s));
         const auto own = std::ranges::count_if(orders_, [&](const RunOrder& each) {
             const auto* other = std::get_if<SendCommands>(&each);
             return other != nullptr && other->asker() == commands->asker();
@@ -355,7 +364,7 @@ void RehearsalRunner::count_pace_from(const Rehearsal& rehearsal, Clock::time_po
 RehearsalRunner::Clock::time_point RehearsalRunner::next_cycle_due(const Rehearsal& rehearsal,
                                                                    Clock::time_point now) const {
     if (paused_) return now + clocks_interval;
-    if (pace_ == 0.0) return now;
+    if (pace_ == 0.0 || jumps_to_e_s_ != no_jump) return now;
     const double flown_s = static_cast<double>(rehearsal.cycles() - pace_since_cycle_) * seconds_per_tick / pace_;
     return pace_since_ + std::chrono::duration_cast<Clock::duration>(duration<double>{flown_s});
 }
@@ -387,9 +396,15 @@ void RehearsalRunner::fly(Rehearsal& rehearsal) {
         if (paused_ || now - due > duration<double>{behind_s_max}) count_pace_from(rehearsal, now);
         if (paused_) continue;
         step(rehearsal);
+        if (const double to_e_s = jumps_to_e_s_; to_e_s != no_jump && now_e_s_ >= to_e_s) {
+            end_jump(rehearsal);
+            paused_ = true;
+            tell(rehearsal, Clock::now(), true);
+        }
         if (now - delivered_ >= delivery_interval || delivery_.entries.size() >= delivery_entries)
             archive_gave_up_ = archive_gave_up_ || !deliver(rehearsal, now);
     }
+    end_jump(rehearsal);
     if (left_ && !stopped_ && !rehearsal.finished())
         leave(rehearsal);
     else
@@ -422,14 +437,33 @@ std::vector<v1::CommandReply> RehearsalRunner::look_at(Rehearsal& rehearsal, con
 }
 
 bool RehearsalRunner::carry_out(Rehearsal& rehearsal, const std::vector<RunOrder>& orders) {
-    const auto before = std::pair{paused_, pace_};
+    const auto set = [this] { return std::tuple{paused_, pace_, jumps_to_e_s_.load()}; };
+    const auto before = set();
     for (const auto& order : orders) std::visit([&](const auto& each) { carry_out(rehearsal, each); }, order);
     if (!delivery_.answers.empty()) archive_gave_up_ = !deliver(rehearsal, Clock::now());
-    return before != std::pair{paused_, pace_};
+    return before != set();
 }
 
-void RehearsalRunner::carry_out(Rehearsal& /*rehearsal*/, const PauseRun& order) {
+void RehearsalRunner::carry_out(Rehearsal& rehearsal, const PauseRun& order) {
     paused_ = order.paused;
+    if (paused_) end_jump(rehearsal);
+}
+
+void RehearsalRunner::carry_out(Rehearsal& rehearsal, const JumpRun& order) {
+    end_jump(rehearsal);
+    if (!(order.to_e_s > now_e_s_)) return;  // passed since it was ordered
+    paused_ = false;
+    jumps_from_e_s_ = now_e_s_;
+    jumps_to_e_s_ = order.to_e_s;
+    spdlog::info("run {} jumps from {} to {}", run_id_.value, from_entry_text(now_e_s_), from_entry_text(order.to_e_s));
+}
+
+void RehearsalRunner::end_jump(const Rehearsal& rehearsal) {
+    if (jumps_to_e_s_.exchange(no_jump) == no_jump) return;
+    v1::KeptRequest kept;
+    kept.mutable_jump()->set_from_e_s(jumps_from_e_s_);
+    kept.mutable_jump()->set_to_e_s(now_e_s_);
+    keep(rehearsal, kept);
 }
 
 void RehearsalRunner::carry_out(Rehearsal& /*rehearsal*/, const PaceRun& order) {
@@ -551,6 +585,7 @@ void RehearsalRunner::step(Rehearsal& rehearsal) {
     delivery_.pass(rehearsal.cycles(), rehearsal.landing().ert_now());
     take_stages(rehearsal);
     conduct(rehearsal);
+    now_e_s_ = rehearsal.landing().sclk() - scenario_.entry_sclk;
 }
 
 void RehearsalRunner::accompany(const telemetry::Received& received, const Rehearsal& rehearsal) {
@@ -620,6 +655,7 @@ v1::RunState RehearsalRunner::state(const Rehearsal& rehearsal) const {
     state.set_outcome(static_cast<v1::Landing::Outcome>(outcome(rehearsal)));
     state.set_pace(pace_);
     state.set_attained_pace(attained_pace_);
+    if (const double to_e_s = jumps_to_e_s_; to_e_s != no_jump && !finished_) state.set_jumps_to_e_s(to_e_s);
     state.set_started(start_.started);
     state.set_entry_sclk(start_.entry.seconds);
     state.set_start_sclk(start_.start.seconds);

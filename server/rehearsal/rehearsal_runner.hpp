@@ -19,6 +19,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -54,6 +55,7 @@ struct PlannedInjects {
 ///          When an item differs, the run stays interrupted and on_begun gets the Error (decision 0021)
 /// Fork     another run is flown again up to an instant, in the same way, and stored as a new one; from there on it goes
 ///          on by itself. When an item differs, the new run ends there and on_begun gets the Error (decision 0060)
+/// Jump     flown to a time as fast as possible and held there; kept as a request is, so that a score knows of it
 /// Plan     an instructor's injects are carried out at the cycles at which they are due, and kept as faults by hand are:
 ///          a run that is flown again has each once. Ground's own flight is told of none
 /// Faults   a run that cannot begin in the archive is not flown: on_begun gets the Error
@@ -115,6 +117,7 @@ class RehearsalRunner {
 
   private:
     using Clock = std::chrono::steady_clock;
+    static constexpr double no_jump = -std::numeric_limits<double>::infinity();
 
     void run();
     /// Begins to follow the plan that the run was given, or that it was stored with.
@@ -132,10 +135,11 @@ class RehearsalRunner {
     void fly(Rehearsal& rehearsal);
     /// Takes the orders since the last call; waits for one until `due`.
     std::vector<RunOrder> take_orders(std::optional<Clock::time_point> due);
-    /// Carries out orders. True when pause or pace changed.
+    /// Carries out orders. True when pause, pace or jump changed.
     bool carry_out(Rehearsal& rehearsal, const std::vector<RunOrder>& orders);
     void carry_out(Rehearsal& rehearsal, const PauseRun& order);
     void carry_out(Rehearsal& rehearsal, const PaceRun& order);
+    void carry_out(Rehearsal& rehearsal, const JumpRun& order);
     void carry_out(Rehearsal& rehearsal, const StopRun& order);
     void carry_out(Rehearsal& rehearsal, const LeaveRun& order);
     void carry_out(Rehearsal& rehearsal, const InterveneRun& order);
@@ -149,6 +153,8 @@ class RehearsalRunner {
     std::string refusal_of(const RunOrder& order) const;
     std::size_t commands_waiting() const;  ///< call with mutex_ held
     void count_pace_from(const Rehearsal& rehearsal, Clock::time_point now);
+    /// Ends a jump here, if there is one, and keeps it: from where, and to where it came.
+    void end_jump(const Rehearsal& rehearsal);
     /// When the next cycle is due; always when there is no pace.
     Clock::time_point next_cycle_due(const Rehearsal& rehearsal, Clock::time_point now) const;
     void finish(Rehearsal& rehearsal);
@@ -189,6 +195,8 @@ class RehearsalRunner {
     std::set<std::string> settled_in_archive_;             ///< injects that a run flown again repeats from its requests
 
     std::atomic<std::size_t> queued_{0}, at_uplink_{0};
+    std::atomic<double> now_e_s_{-std::numeric_limits<double>::infinity()};  ///< of the last cycle, by the vehicle
+    std::atomic<double> jumps_to_e_s_{no_jump};
 
     // Used by the rehearsal's thread only.
     archive::RunId run_id_;
@@ -198,6 +206,7 @@ class RehearsalRunner {
     bool timeline_moved_ = false;  ///< by a stage in delivery_
     bool paused_ = false, finished_ = false, stopped_ = false, left_ = false, archive_gave_up_ = false;
     double pace_ = 1.0, attained_pace_ = 0.0;
+    double jumps_from_e_s_ = 0.0;
     Clock::time_point pace_since_{};  ///< start of counting the pace, at cycle pace_since_cycle_
     std::uint64_t pace_since_cycle_ = 0;
     std::string digest_;

@@ -20,6 +20,11 @@ struct PauseRun {
 struct PaceRun {
     double pace = 1.0;  ///< times real time; 0: as fast as possible
 };
+/// Flies to a time as fast as possible, and holds there: the next act of a rehearsal. Commands are refused meanwhile;
+/// pausing ends it where it is.
+struct JumpRun {
+    double to_e_s = 0.0;  ///< from entry, by the vehicle's clock
+};
 struct StopRun {};
 /// The server ends: nothing more is flown, and the run stays as after a crash, so that it can be continued.
 struct LeaveRun {};
@@ -51,6 +56,6 @@ struct SendCommands {
 };
 
 using RunOrder =
-    std::variant<PauseRun, PaceRun, StopRun, LeaveRun, InterveneRun, SendCommands, commands::TimelineVerdict>;
+    std::variant<PauseRun, PaceRun, JumpRun, StopRun, LeaveRun, InterveneRun, SendCommands, commands::TimelineVerdict>;
 
 }  // namespace aeolis::server

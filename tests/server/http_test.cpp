@@ -610,6 +610,7 @@ TEST_CASE("an instructor breaks something in the rehearsal that goes on, and is 
     const Exchange refused[] = {
         {"", "", R"({})", 422, "orbiter_outage, uhf_loss, wind_shift, air_shift or sensor_error is wanted"},
         {"", "", R"({"computer_reset":false})", 422, "false asks for nothing"},
+        {"", "", R"({"air_shift":{"duration_s":3,"fraction":7}})", 422, "air_shifts[0].fraction: 7"},
         {"", "", R"({"system_fault":{"duration_s":0}})", 422, "duration_s: 0"},
         {"", "", R"({"station_outage":{"duration_s":0}})", 422, "station_outages[0].duration_s: 0"},
         {"", "", R"({"station_outage":{"duration_s":3,"begin_before_entry_s":5}})", 422, "it begins now"},

@@ -15,6 +15,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <mutex>
 #include <random>
 #include <thread>
 #include <unistd.h>
@@ -346,6 +347,77 @@ TEST_CASE("who hears of a run's end may begin another: the runner is over by the
     while (ends == 0) std::this_thread::sleep_for(std::chrono::milliseconds{1});
     CHECK(ends == 1);
     CHECK(over_by_then == 1);
+}
+
+TEST_CASE(
+    "a jump of time flies to its end as fast as it can and holds there; nobody commands meanwhile, and it is kept",
+    "[rehearsal][threads][R59]") {
+    const test::TemporaryFolder folder;
+    const dictionary::Dictionary& dictionary = tests::shipped_dictionary();
+    archive::RunId run;
+    std::string digest;
+    const auto scenario = test::short_landing();
+    {
+        PipelineThread pipeline{std::move(archive::Archive::open(folder / "a.db")).value(), dictionary,
+                                PipelineThread::Faults::give_up, [](const auto&) {}};
+        std::mutex mutex;
+        v1::RunState told;
+        RehearsalRunner::Callbacks callbacks;
+        callbacks.on_begun = [&](Result<v1::RunState> state) {
+            run = {static_cast<std::uint32_t>(state->run())};
+            const std::scoped_lock lock{mutex};
+            told = *state;
+        };
+        callbacks.on_clocks = [](const auto&) {};
+        callbacks.on_state = [&](const v1::RunState& state) {
+            const std::scoped_lock lock{mutex};
+            told = state;
+        };
+        RehearsalRunner runner{scenario, 7, 1.0, dictionary, pipeline, callbacks};
+        const auto wait_until = [&](const auto& is_so) {
+            for (;; std::this_thread::sleep_for(std::chrono::milliseconds{1})) {
+                const std::scoped_lock lock{mutex};
+                if (is_so(told)) return told;
+            }
+        };
+        const double begin_e_s = -scenario.start_before_entry_s;
+        wait_until([&](const auto& state) { return state.clocks().e_s() > begin_e_s; });
+        REQUIRE(runner.order(JumpRun{begin_e_s + 20.0}).ok());
+        const auto jumping = wait_until([](const auto& state) { return state.has_jumps_to_e_s(); });
+        CHECK(jumping.jumps_to_e_s() == begin_e_s + 20.0);
+        const auto held = wait_until([](const auto& state) { return state.state() == v1::RunState::paused; });
+        CHECK_FALSE(held.has_jumps_to_e_s());
+        CHECK(held.pace() == 1.0);
+        CHECK(held.clocks().e_s() == Approx(begin_e_s + 20.0).margin(2.0 / 64.0));
+        CHECK(runner.order(JumpRun{begin_e_s + 5.0}).error().message.starts_with("jump: E−"));
+
+        // Pausing ends one where it is.
+        REQUIRE(runner.order(JumpRun{begin_e_s + 20000.0}).ok());
+        wait_until([](const auto& state) { return state.has_jumps_to_e_s(); });
+        std::string refused;
+        SendCommands order;
+        order.requests.emplace_back().set_command("NO_OP");
+        order.replies = [&](std::vector<v1::CommandReply> replies) { refused = replies.front().reason(); };
+        CHECK(runner.order(std::move(order)).ok());
+        CHECK_THAT(refused, Catch::StartsWith("the rehearsal jumps to E+"));
+        REQUIRE(runner.order(PauseRun{true}).ok());
+        wait_until(
+            [](const auto& state) { return state.state() == v1::RunState::paused && !state.has_jumps_to_e_s(); });
+        REQUIRE(runner.order(PaceRun{0.0}).ok());
+        REQUIRE(runner.order(PauseRun{false}).ok());
+        digest = wait_until([](const auto& state) { return state.state() == v1::RunState::finished; }).digest();
+    }
+    auto reader = archive::Reader::open(folder / "a.db", dictionary);
+    REQUIRE(reader.ok());
+    const auto jumps = reader->jumps(run);
+    REQUIRE(jumps.ok());
+    REQUIRE(jumps->size() == 2);
+    CHECK(jumps->at(0).to_e_s() - jumps->at(0).from_e_s() == Approx(20.0).margin(5.0));
+    CHECK(jumps->at(1).from_e_s() >= jumps->at(0).to_e_s());
+    // Nothing of the flight is another by it.
+    Rehearsal undisturbed{scenario, 7, 0, dictionary};
+    while (!undisturbed.finished()) undisturbed.step();
+    CHECK(undisturbed.digest() == digest);
 }
 
 TEST_CASE("a kept request comes back from its text, and another text is none", "[rehearsal][archive]") {

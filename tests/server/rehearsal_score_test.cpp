@@ -242,6 +242,31 @@ TEST_CASE("of a fork only what was done from the fork on is judged, and nothing 
     CHECK(points(score(facts), "detection").size() == 1);
 }
 
+TEST_CASE("what fell into a jump of time is not judged: nobody could act; a jump before or after changes nothing",
+          "[score][R59]") {
+    auto facts = ended();
+    add_radar_fault(facts, 8.0);
+    facts.alarms = {limit(10.0, v1::Alarm::watch)};
+    const auto judged = [&](double from_e_s, double to_e_s) {
+        v1::Jump jump;
+        jump.set_from_e_s(from_e_s);
+        jump.set_to_e_s(to_e_s);
+        facts.jumps = {jump};
+        return score(facts);
+    };
+    const auto expected = points(score(facts), "diagnosis").size();
+    REQUIRE(expected == 1);
+    // By the vehicle's clock; what is heard then was sent a light time, 100 s, before.
+    CHECK(points(judged(105.0, 200.0), "diagnosis").empty());
+    CHECK(points(judged(130.0, 400.0), "diagnosis").empty());
+    CHECK(points(judged(105.0, 200.0), "detection").empty());
+    CHECK(points(judged(-500.0, 105.0), "diagnosis").size() == expected);
+    CHECK(points(judged(180.0, 900.0), "diagnosis").size() == expected);
+    const auto told = judged(105.0, 200.0);
+    REQUIRE(told.faults_size() == 1);
+    CHECK_THAT(told.faults(0).not_judged(0), Catch::EndsWith("the rehearsal jumped ahead meanwhile"));
+}
+
 TEST_CASE("what showed nowhere is not judged, and a plan's own words come before the rubric's", "[score][R59]") {
     auto facts = ended();
     add_radar_fault(facts, 8.0, "mine");
