@@ -27,7 +27,9 @@ const OF_THE_WORKER = [
 ].map((name) => `.aeolis.v1.${name}`);
 
 /** Fields that the page sends by HTTP only, as JSON. They alone need the schema of scenarios. */
-const NOT_ON_THE_SOCKET = ['start', 'inject', 'note', 'plan'].map((name) => `.aeolis.v1.RehearsalControl.${name}`);
+const NOT_ON_THE_SOCKET = ['start', 'inject', 'note', 'plan', 'jump'].map(
+  (name) => `.aeolis.v1.RehearsalControl.${name}`,
+);
 
 function protoc(...more) {
   execFileSync('protoc', more, { stdio: 'inherit' });

@@ -34,7 +34,8 @@ struct NavigatedState {
 class Strapdown {
   public:
     /// `gravity_fraction`: by which gravity is taken for stronger near the ground, see local_gravity.
-    explicit Strapdown(double gravity_fraction = 0.0) : gravity_fraction_(gravity_fraction) {}
+    explicit Strapdown(double gravity_fraction) : gravity_fraction_(gravity_fraction) {}
+    Strapdown() = default;
 
     void start(const NavigatedState& state) { state_ = state; }
     void set_attitude(const Quaternion& q_MB) { state_.q_MB = q_MB; }
@@ -75,7 +76,7 @@ class Strapdown {
     void step(const Vector3& delta_angle_B, const Vector3& delta_v_B, double dt_s);
     void fill(std::uint32_t missing);
 
-    double gravity_fraction_;
+    double gravity_fraction_ = 0.0;
     NavigatedState state_;
     Vector3 specific_force_B_mps2_ = Vector3::Zero();
     Vector3 rate_B_rps_ = Vector3::Zero();

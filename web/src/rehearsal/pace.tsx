@@ -4,6 +4,7 @@ import { mayRehearse } from '../access/model';
 import { changeReplayPace, playOrHold } from '../replay/model';
 import { control } from '../run/connection';
 import { modeNow, replay, runNow, store } from '../run/shown';
+import { fromEntry } from '../run/time';
 import { PACES, attainedText, nextPace, paceText } from './model';
 import './style.css';
 
@@ -24,7 +25,16 @@ export function PaceBar() {
   const run = runNow();
   if (!run?.going || modeNow() !== 'rehearsal') return null;
   const paused = run.run.state === 'paused';
-  const attained = <span class="attained">{paused ? 'paused' : attainedText(run.run.pace, run.run.attainedPace)}</span>;
+  const { jumpsToES: jumps } = run.run;
+  const attained = (
+    <span class="attained" data-testid="attained">
+      {paused
+        ? 'paused'
+        : jumps !== undefined
+          ? `jumps to ${fromEntry(jumps)}`
+          : attainedText(run.run.pace, run.run.attainedPace)}
+    </span>
+  );
   if (!mayRehearse())
     return (
       <div class="pace-bar" data-testid="pace-bar">

@@ -95,6 +95,32 @@ describe('a rehearsal', () => {
     act(() => button('stop-rehearsal')?.click());
     expect(heard).toEqual([{ type: 'control', run: 1, control: { action: 'stop' } }]);
   });
+  it('jumps to its next act, says so while it does, and refuses a time that has passed', async () => {
+    shown();
+    const field = root.querySelector<HTMLInputElement>('[data-testid="jump-to"]') as HTMLInputElement;
+    const type = (text: string) =>
+      act(() => {
+        field.value = text;
+        field.dispatchEvent(new InputEvent('input', { bubbles: true }));
+      });
+    type('E-0:02:00');
+    expect([button('jump')?.disabled, button('jump-words')?.textContent]).toEqual([
+      true,
+      '✖ E−2:00 has passed at the vehicle',
+    ]);
+    type('soon');
+    expect(button('jump-words')?.textContent).toBe('✖ a time from entry, such as E-0:47:00');
+    type('E-0:00:30');
+    server.routes['POST /rehearsals/current'] = { status: 202, json: {} };
+    await act(async () => {
+      button('jump')?.click();
+      await new Promise((resolve) => setTimeout(resolve, 20));
+    });
+    expect(server.asked.at(-1)?.body).toEqual({ run: 1, jump: 'E-30' });
+    expect(field.value).toBe('');
+    shown(aRun({ jumpsToES: -30 }));
+    expect(button('attained')?.textContent).toBe('jumps to E−0:30');
+  });
   it('that is continued says what is known of how far it is, and can be left to itself: then nothing is shown unasked', async () => {
     let answer: (_: object) => void = () => undefined;
     server.routes['POST /rehearsals'] = () => new Promise((resolve) => (answer = resolve as typeof answer));

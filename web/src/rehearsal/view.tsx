@@ -12,6 +12,7 @@ import { pastRange, runNow, runs, scenarios, store } from '../run/shown';
 import { isGoing } from '../run/start';
 import { fromEntry } from '../run/time';
 import { EndRun } from './end_run';
+import { JumpForm } from './jump';
 import { InstructorPanel } from './instructor_panel';
 import { forgetPlan, planOrder, whyNotPlan } from './plan_choice';
 import { PlanChoice } from './plan_choice_view';
@@ -153,6 +154,7 @@ export function Rehearsal() {
                       : names.find((each) => each.name === scenario.value)?.title}
         </span>
       </form>
+      {going && allowed && !past && !isReal(going) && <JumpForm />}
       <CatchingUp />
       {refused.value && (
         <p role="alert" class="status-alarm refused" data-testid="rehearsal-problem">
