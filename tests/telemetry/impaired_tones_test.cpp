@@ -183,7 +183,8 @@ TEST_CASE("a line forty decibels above the signal in the midst of its tones is l
     CHECK_FALSE(ToneReceiver::make(mfsk, 8192.0, {{}, 0.0, {}, {5000.0}, {}}));
 }
 
-TEST_CASE("samples without noise, with all that a hard square wave aliases, give no wrong tone", "[tones][R56]") {
+TEST_CASE("samples without noise, with all that a hard square wave aliases, give no wrong tone",
+          "[release][tones][R56]") {
     for (const std::uint64_t seed : {1U, 3U}) {
         Signal signal;
         signal.tones = tones_until(60.0, seed);
@@ -207,7 +208,7 @@ TEST_CASE("samples without noise, with all that a hard square wave aliases, give
 }
 
 TEST_CASE("a line that stands still beside the carrier, or that it passes, is left out once its tones are heard",
-          "[tones][R56]") {
+          "[release][tones][R56]") {
     for (const Case& one : cases()) {
         if (one.kind != "line beside the carrier" && one.kind != "line that the carrier passes" &&
             one.kind != "DC under the carrier")

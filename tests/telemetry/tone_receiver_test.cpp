@@ -96,7 +96,7 @@ TEST_CASE("a copy of a receiver goes on as the first does", "[tones]") {
     }
 }
 
-TEST_CASE("any rate that holds the tones will do", "[tones]") {
+TEST_CASE("any rate that holds the tones will do", "[release][tones]") {
     for (const double hz : {4000.0, 10007.0, 44100.0, 100000.0}) {
         XBandPath path = steady(-200.0);
         path.rate_hz = hz;
@@ -117,7 +117,7 @@ TEST_CASE("a rate that is out of range, or cannot hold the tones, is refused by 
     CHECK(ToneReceiver::make(high, 4000.0).error().message.find("does not hold tones") != std::string::npos);
 }
 
-TEST_CASE("samples said to be of half or twice their rate give no wrong tone", "[tones]") {
+TEST_CASE("samples said to be of half or twice their rate give no wrong tone", "[release][tones]") {
     for (const double said_hz : {0.5 * rate_hz, 2.0 * rate_hz}) {
         auto ear = receiver(said_hz);
         const auto heard = received(ear, samples_of(steady(), some_tones(), 80.0));
