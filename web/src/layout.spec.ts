@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import { expect, it } from 'vitest';
 import { LAYOUT } from './layout';
+import { POSITION_VIEWS } from './positions/layout';
+import { pictureOf } from './run/address';
 
 const FILES = import.meta.glob<string>('../../dictionaries/msl/*.{xml,csv}', {
   query: '?raw',
@@ -25,7 +27,8 @@ function namesIn(part: unknown): string[] {
 
 it('names only what the shipped dictionary has', () => {
   const words = wordsOf(FILES);
-  const names = namesIn(LAYOUT);
+  const channels = Object.values(POSITION_VIEWS).flatMap((view) => pictureOf(view).picture.plots?.flat() ?? []);
+  const names = namesIn([LAYOUT, channels]);
   expect(names.length).toBeGreaterThan(70);
   expect(names.filter((name) => !words.has(name))).toEqual([]);
 });

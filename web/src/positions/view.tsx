@@ -9,6 +9,7 @@ import { position, positionWords } from '../procedures/position';
 import { clockOf } from '../procedures/step';
 import { runNow, signalOfRun, takesActs } from '../run/shown';
 import type { RunStore } from '../run/store';
+import { POSITION_VIEWS } from './layout';
 import {
   DIRECTOR,
   act,
@@ -25,6 +26,7 @@ import {
   refreshPositions,
 } from './model';
 import type { ActKind, Answer, Board, Deed, Poll, Seat } from './model';
+import { showLayoutOf } from './own_layout';
 import './style.css';
 
 const LOOK_MS = 300; // chosen: the interval of looks for another instant; only that is asked for
@@ -231,6 +233,17 @@ function SeatOf({ seat, poll, run }: { seat: Seat; poll: Poll | undefined; run: 
       {acts.map((kind) => (
         <Act key={kind} kind={kind} seat={seat} poll={poll} first={kind === 'take' && isOffered} />
       ))}
+      {takesActs() && seat.by !== '' && seat.by === myName() && seat.position in POSITION_VIEWS && (
+        <button
+          type="button"
+          class="quiet"
+          data-testid="position-layout"
+          title={`a layout of yours named ${positionWords(seat.position)} stands for it`}
+          onClick={() => void showLayoutOf(seat.position)}
+        >
+          layout
+        </button>
+      )}
     </li>
   );
 }
