@@ -26,6 +26,15 @@ inline std::array<double, 4> to_array(const Quaternion& q) {
     return {q.w(), q.x(), q.y(), q.z()};
 }
 
+/// East and north where `up_M` points up, unit vectors in M. Not at the poles.
+struct LevelAxes {
+    Vector3 east_M, north_M;
+};
+inline LevelAxes level_axes(const Vector3& up_M) {
+    const Vector3 east_M = Vector3::UnitZ().cross(up_M).normalized();
+    return {east_M, up_M.cross(east_M)};
+}
+
 inline constexpr double pi = 3.14159265358979323846;
 inline constexpr double degree = pi / 180.0;
 

@@ -10,17 +10,17 @@ namespace aeolis::flight::gnc {
 namespace {
 
 /// Rows: east, north, up.
-Matrix3 level_axes(const Vector3& up_M) {
-    const Vector3 east = Vector3::UnitZ().cross(up_M).normalized();
+Matrix3 to_level(const Vector3& up_M) {
+    const auto [east_M, north_M] = level_axes(up_M);
     Matrix3 axes;
-    axes << east.transpose(), up_M.cross(east).transpose(), up_M.transpose();
+    axes << east_M.transpose(), north_M.transpose(), up_M.transpose();
     return axes;
 }
 
 }  // namespace
 
 void WindEstimate::on(const Parameters& parameters, const Vector3& up_M, const Vector3& v_M, const Vector3& force_M) {
-    const Matrix3 axes = level_axes(up_M);
+    const Matrix3 axes = to_level(up_M);
     v_sum_ += axes * v_M;
     force_sum_ += axes * force_M;
     ++cycles_;
@@ -61,7 +61,7 @@ std::optional<Vector3> WindEstimate::wind_M(const Parameters& parameters, const 
     const bool shown = radius2 > 0.0 && least >= parameters.wind_spread_min * parameters.wind_spread_min * radius2 &&
                        departure2 <= departure_max * departure_max;
     if (!shown) return std::nullopt;
-    return level_axes(up_M).transpose() * Vector3{wind.x(), wind.y(), 0.0};
+    return to_level(up_M).transpose() * Vector3{wind.x(), wind.y(), 0.0};
 }
 
 }  // namespace aeolis::flight::gnc

@@ -69,10 +69,8 @@ Sidestep choose_sidestep(const Parameters& parameters, const Vector3& divert_M, 
 }
 
 Vector3 azimuth_direction(const Vector3& p_MoB_M, double azimuth_rad) {
-    const Vector3 up = p_MoB_M.normalized();
-    const Vector3 east = Vector3::UnitZ().cross(up).normalized();
-    const Vector3 north = up.cross(east);
-    return std::cos(azimuth_rad) * north + std::sin(azimuth_rad) * east;
+    const auto [east_M, north_M] = level_axes(p_MoB_M.normalized());
+    return std::cos(azimuth_rad) * north_M + std::sin(azimuth_rad) * east_M;
 }
 
 }  // namespace aeolis::flight::gnc::powered_descent
