@@ -56,6 +56,7 @@ struct Load {
     double engine_isp_s = 210.0;
     double divert_m = 304.0;
     double divert_azimuth_deg = 112.0;
+    double aim_east_m = 0.0, aim_north_m = 0.0;  ///< where entry guidance aims, from the target that ground sends
     double gravity_fraction = 0.0;  ///< by which gravity is taken for stronger near the ground than `gnc::gravity`
     // NOLINTEND(readability-magic-numbers)
     EntryReference entry_reference;

@@ -72,7 +72,7 @@ InitialState state_before_entry(const Scenario& scenario, double before_entry_s,
     solution.p_MoB_M_m = array3(at_start.p_MoB_M);
     solution.v_MB_M_mps = array3(at_start.v_MB_M);
     solution.entry = scenario.entry_sclk + to_tick(entry_delay_s(believed, scenario.entry.radius_m));
-    solution.target = aimed_target(scenario);
+    solution.target = scenario.target;
     solution.parachute_speed_mps = scenario.parachute_speed_mps;
     solution.heatshield_speed_mps = scenario.heatshield_speed_mps;
     solution.backshell_altitude_m = scenario.backshell_altitude_m;

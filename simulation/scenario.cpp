@@ -428,9 +428,10 @@ void check_wind_shifts(const Scenario& scenario, std::vector<std::string>& found
 void check_air_shifts(const Scenario& scenario, std::vector<std::string>& found) {
     check_spells(scenario, scenario.air_shifts, "air_shifts", found);
     for (std::size_t i = 0; i < scenario.air_shifts.size(); ++i)
-        if (const double fraction = scenario.air_shifts[i].fraction; !(fraction >= -0.5 && fraction <= 1.0))
+        if (const double fraction = scenario.air_shifts[i].fraction;
+            !(fraction >= -0.5 && fraction <= 1.0 && fraction != 0.0))
             found.push_back("air_shifts[" + std::to_string(i) + "].fraction: " + number(fraction) +
-                            " is outside -0.5 … 1");
+                            " is 0 or outside -0.5 … 1");
 }
 
 void check_sensor_errors(const Scenario& scenario, std::vector<std::string>& found) {
@@ -440,8 +441,11 @@ void check_sensor_errors(const Scenario& scenario, std::vector<std::string>& fou
         const std::string name = "sensor_errors[" + std::to_string(i) + "].";
         if (error.device != flight::Device::imu && error.device != flight::Device::radar)
             found.push_back(name + "device: only the IMU and the radar measure what can be off");
+        if (error.off_by == 0.0 && error.grows_per_s == 0.0)
+            found.push_back(name + "off_by: neither it nor grows_per_s is other than 0");
         for (const auto& [field, value] :
-             {std::pair{"off_by", error.off_by}, std::pair{"grows_per_s", error.grows_per_s}})
+             {std::pair{"off_by", error.off_by}, std::pair{"grows_per_s", error.grows_per_s},
+              std::pair{"grows_per_s", error.grows_per_s * error.duration_s}})
             if (!(value >= -100.0 && value <= 100.0))
                 found.push_back(name + field + ": " + number(value) + " is outside -100 … 100");
     }

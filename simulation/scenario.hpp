@@ -409,7 +409,7 @@ inline constexpr std::size_t scenario_rows_max = 256;  ///< of any other list
 bool disperses_later(const Scenario& scenario);
 /// The scenario with every seeded error of `dispersions` switched off.
 Scenario undispersed(Scenario scenario);
-/// The target as guidance is told it: where it aims.
+/// Where entry guidance aims: the target, moved by what the scenario says.
 Target aimed_target(const Scenario& scenario);
 /// The scenario with what is believed in place of the truth: the world that guidance is designed for, and in which
 /// ground flies along. Position, attitude and gravity stay true.

@@ -241,7 +241,7 @@ void World::State::shift_air() {
     double factor = 1.0;
     for (const AirShift& shift : scenario.air_shifts)
         if (goes_on(shift, scenario.entry_sclk - sclk())) factor *= 1.0 + shift.fraction;
-    vehicle.shift_air(factor);
+    vehicle.shift_air(std::clamp(factor, 0.1, 10.0));  // our assumption: of several at once
 }
 
 double World::State::sensor_off_by(flight::Device device, flight::Unit unit) const {
@@ -354,7 +354,9 @@ void World::State::watch() {
     if (!stage_down && since_contact_s < scenario.end_after_touchdown_s) return;
     if ((vehicle.at().p_MoB_M - p_MoRover_M).norm() < stage_clear_m)
         return end(Outcome::lost, "the descent stage fell onto the rover");
-    end(Outcome::touchdown, "the rover stands, the descent stage is away");
+    end(Outcome::touchdown, vehicle.terrain().is_known(p_MoRover_M)
+                                ? "the rover stands, the descent stage is away"
+                                : "the rover stands beyond the grid of the ground, on heights of its edge");
 }
 
 World::World(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number)

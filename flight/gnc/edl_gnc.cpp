@@ -74,6 +74,11 @@ EdlGnc::EdlGnc(const Load& load)
 void EdlGnc::set_solution(const Solution& solution, Sclk now) {
     solution_ = solution;
     target_M_ = direction_of(solution.target_latitude_rad, solution.target_longitude_rad);
+    if (load_.aim_east_m != 0.0 || load_.aim_north_m != 0.0) {
+        const auto [east_M, north_M] = level_axes(target_M_);
+        target_M_ = (solution.target_radius_m * target_M_ + load_.aim_east_m * east_M + load_.aim_north_m * north_M)
+                        .normalized();
+    }
     // Once the air is felt, the navigated state is better than ground's from hours ago: only the bounds are taken.
     if (navigating_ && mode() >= Mode::range_control) return;
     NavigatedState state;

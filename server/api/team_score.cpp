@@ -194,11 +194,18 @@ class TeamJudge {
                               double until_s) {
         if (!sign) return "no sign of it was received";
         if (sign->e_s + expectation.within_s > judged_.until_e_s) return "the run ended before";
-        if (jumped(sign->e_s, sign->e_s + expectation.within_s)) return "the rehearsal jumped ahead meanwhile";
-        if (expectation.act == Act::acknowledge)
-            return judge_acknowledgement(expectation, felt_s, until_s) ? "" : "no such alarm was raised by it";
-        judge_expectation(expectation, *sign);
-        return "";
+        const auto judged_before = judged_points_.points.size();
+        if (expectation.act == Act::acknowledge) {
+            if (!judge_acknowledgement(expectation, felt_s, until_s)) return "no such alarm was raised by it";
+        } else {
+            judge_expectation(expectation, *sign);
+        }
+        // What was done in time before the jump is earned; that nothing is done in one says nothing.
+        const bool earned = expectation.act != Act::no_command && judged_points_.points.back().point.share() == 1.0;
+        const double at_most = expectation.act == Act::no_command ? 1.0 : fades_by;
+        if (earned || !jumped(sign->e_s, sign->e_s + at_most * expectation.within_s)) return "";
+        judged_points_.points.resize(judged_before);
+        return "the rehearsal jumped ahead meanwhile";
     }
 
     /// Whether the rehearsal jumped between two times at which word reached Earth.
@@ -322,7 +329,7 @@ class TeamJudge {
             const auto& alarm = acts_.raised.all[i];
             const bool of_fault = alarm.e_s >= felt_s - early_s && alarm.e_s <= until_s - signs_until_s + follows_s;
             if (!of_fault || !judged_alarms_.insert(i).second) continue;
-            if (jumped(alarm.e_s, alarm.e_s + judged_.rubric.alarm_within_s)) continue;
+            if (promptness(alarm) < 1.0 && jumped(alarm.e_s, alarm.e_s + judged_.rubric.alarm_until_s)) continue;
             if (many++ == 0) first_s = alarm.e_s;
             if (alarm.acknowledged) ++acknowledged;
             sum += promptness(alarm);
@@ -341,7 +348,7 @@ class TeamJudge {
         for (std::size_t i = 0; i < acts_.raised.all.size(); ++i) {
             const auto& alarm = acts_.raised.all[i];
             if (judged_alarms_.contains(i) || alarm.e_s < judged_.from_e_s) continue;
-            if (jumped(alarm.e_s, alarm.e_s + judged_.rubric.alarm_within_s)) continue;
+            if (promptness(alarm) < 1.0 && jumped(alarm.e_s, alarm.e_s + judged_.rubric.alarm_until_s)) continue;
             add(Skill::detection, fmt::format("acknowledges {} {}", in_words(alarm.name), alarm.limit), alarm.e_s,
                 promptness(alarm), acknowledgement_words(alarm));
         }
@@ -353,11 +360,11 @@ class TeamJudge {
             if (heard == acts_.heard.end() || heard->second.empty()) continue;  // nobody could know of it
             const double heard_s = *std::ranges::min_element(heard->second);
             if (heard_s < judged_.from_e_s || heard_s + within_s > judged_.until_e_s) continue;
-            if (jumped(heard_s, heard_s + within_s)) continue;
             ++judging_;
             judge_expectation({Skill::communication, Act::note, words, within_s}, {heard_s, after});
             auto& point = judged_points_.points.back().point;
             point.set_expected(fmt::format("after {}: {}", in_words(after), point.expected()));
+            if (point.share() < 1.0 && jumped(heard_s, heard_s + fades_by * within_s)) judged_points_.points.pop_back();
         }
     }
 

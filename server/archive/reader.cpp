@@ -219,7 +219,9 @@ Result<std::vector<v1::Jump>> Reader::jumps(RunId run) {
         if (!found) return found.error();
         if (!*found) return jumps;
         const auto kept = kept_request(std::string(row.text(0)));
-        if (kept.has_jump()) jumps.push_back(kept.jump());
+        if (!kept.has_jump()) continue;
+        if (!jumps.empty() && jumps.back().begins()) jumps.pop_back();  // it has ended
+        jumps.push_back(kept.jump());
     }
 }
 

@@ -320,7 +320,7 @@ class Reader {
     Result<v1::InterventionList> interventions(RunId run, const InterventionQuery& query = {});
     /// The instructor's plan that the run began with; no text: it has none.
     Result<v1::InstructorPlan> instructor_plan(RunId run);
-    /// The jumps of time of a rehearsal, in order.
+    /// The jumps of time of a rehearsal, in order; of one that was cut off within it how far it was to go.
     Result<std::vector<v1::Jump>> jumps(RunId run);
     /// The timeline: planned times, firings as far as known, and predictions from what was known.
     Result<v1::TimepointList> timepoints(RunId run, const TimepointQuery& query = {});

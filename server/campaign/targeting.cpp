@@ -7,9 +7,17 @@
 #include <fmt/format.h>
 
 namespace aeolis::server::campaign {
+namespace {
+
+/// Whole metres, and no negative zero.
+double in_metres(double offset_m) {
+    return std::round(offset_m) + 0.0;
+}
+
+}  // namespace
 
 Aim aim_of(const simulation::Scenario& scenario) {
-    return {std::round(scenario.guidance.aim_east_m), std::round(scenario.guidance.aim_north_m)};
+    return {in_metres(scenario.guidance.aim_east_m), in_metres(scenario.guidance.aim_north_m)};
 }
 
 simulation::Scenario with_aim(const simulation::Scenario& scenario, const Aim& aim) {
@@ -59,8 +67,8 @@ Result<Targeting> aim_at_target(const Aim& begin, double tolerance_m, std::size_
         if (!landings) return landings.error();
         targeting.rounds.push_back(*landings);
         targeting.reached = landings->miss_m() <= tolerance_m;
-        if (targeting.reached) break;
-        aim = {std::round(aim.east_m - landings->east_m), std::round(aim.north_m - landings->north_m)};
+        if (targeting.reached || targeting.rounds.size() == rounds_max) break;
+        aim = {in_metres(aim.east_m - landings->east_m), in_metres(aim.north_m - landings->north_m)};
         if (std::hypot(aim.east_m, aim.north_m) > simulation::aim_max_m)
             return Error{fmt::format(
                 "the mean of {} landings misses by {:.0f} m, and an aim to meet it would lie {:.0f} "

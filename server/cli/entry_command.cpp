@@ -67,8 +67,10 @@ int entry_target(const EntryTargetOptions& options) {
         return failed(fmt::format("entry target: after {} {} the mean still misses by {:.0f} m, more than {:g}",
                                   targeting->rounds.size(), targeting->rounds.size() == 1 ? "round" : "rounds",
                                   last.miss_m(), options.tolerance_m));
-    fmt::print("In the scenario:\n\n    guidance {{ aim_east_m: {:.0f} aim_north_m: {:.0f} }}\n", last.aim.east_m,
-               last.aim.north_m);
+    fmt::print(
+        "In the scenario (the mean of these {} landings is itself known to {:.0f} m east and {:.0f} m north, one "
+        "sigma):\n\n    guidance {{ aim_east_m: {:.0f} aim_north_m: {:.0f} }}\n",
+        last.landed, last.east_sigma_m, last.north_sigma_m, last.aim.east_m, last.aim.north_m);
     return 0;
 }
 

@@ -22,6 +22,10 @@ std::string enumerator_words(const std::string& name, std::string_view prefix) {
     return words;
 }
 
+std::string percent_text(double fraction) {
+    return commands::shortest_text(std::round(1000.0 * fraction) / 10.0);
+}
+
 std::string any_of(const std::vector<std::string>& names) {
     return fmt::format("{}", fmt::join(names, " or "));
 }
@@ -71,8 +75,7 @@ std::string text_of(const v1::FaultInjection& injected) {
         return "no orbiter relays, for " + seconds(injected.orbiter_outage().duration_s());
     case v1::FaultInjection::kUhfLoss:
         return fmt::format("UHF loses {} % of its octets at least, for {}",
-                           commands::shortest_text(100.0 * injected.uhf_loss().fraction()),
-                           seconds(injected.uhf_loss().duration_s()));
+                           percent_text(injected.uhf_loss().fraction()), seconds(injected.uhf_loss().duration_s()));
     case v1::FaultInjection::kWindShift:
         return fmt::format("the wind changes by {} m/s to the east and {} m/s to the north, for {}",
                            commands::shortest_text(injected.wind_shift().east_mps()),
@@ -80,7 +83,7 @@ std::string text_of(const v1::FaultInjection& injected) {
                            seconds(injected.wind_shift().duration_s()));
     case v1::FaultInjection::kAirShift: {
         const auto& shift = injected.air_shift();
-        return fmt::format("the air is {} % {}, for {}", commands::shortest_text(100.0 * std::abs(shift.fraction())),
+        return fmt::format("the air is {} % {}, for {}", percent_text(std::abs(shift.fraction())),
                            shift.fraction() < 0.0 ? "thinner" : "denser", seconds(shift.duration_s()));
     }
     case v1::FaultInjection::kSensorError: {

@@ -52,6 +52,10 @@ bool comes_before(const archive::ForkPoint& fork, const archive::RequestRecord& 
     return is_fork(request) || archive::kept_request(request.request).has_plan();
 }
 
+std::string jumping_text(double to_e_s) {
+    return fmt::format("the rehearsal jumps to {}: send it when it holds there", from_entry_text(to_e_s));
+}
+
 /// The time on Earth at a cycle to come.
 Ert time_of_cycle(const Rehearsal& rehearsal, std::uint64_t cycle) {
     const double from_now_s = static_cast<double>(cycle - rehearsal.cycles()) * seconds_per_tick;
@@ -124,8 +128,8 @@ std::string RehearsalRunner::refusal_of(const RunOrder& order) const {
     }
     if (const auto* commands = std::get_if<SendCommands>(&order)) {
         if (over_ || stop_) return over_reason;
-        if (const double to_e_s = jumps_to_e_s_; to_e_s != no_jump && !commands->only_check)
-            return fmt::format("the rehearsal jumps to {}: send it when it holds there", from_entry_text(to_e_s));
+        if (const auto to_e_s = jump_under_way(); to_e_s && !commands->only_check && !knows_all(commands->requests))
+            return jumping_text(*to_e_s);
         const auto own = std::ranges::count_if(orders_, [&](const RunOrder& each) {
             const auto* other = std::get_if<SendCommands>(&each);
             return other != nullptr && other->asker() == commands->asker();
@@ -152,6 +156,17 @@ std::string RehearsalRunner::refusal_of(const RunOrder& order) const {
     if (intervention.has_note() && notes_taken_ == notes_max)
         return fmt::format("{} notes have been written about this run: no more", notes_max);
     return {};
+}
+
+std::optional<double> RehearsalRunner::jump_under_way() const {
+    for (const auto& order : orders_)
+        if (const auto* jump = std::get_if<JumpRun>(&order)) return jump->to_e_s;
+    const double to_e_s = jumps_to_e_s_;
+    return to_e_s == no_jump ? std::nullopt : std::optional{to_e_s};
+}
+
+bool RehearsalRunner::knows_all(const std::vector<v1::CommandRequest>& requests) const {
+    return std::ranges::all_of(requests, [this](const auto& request) { return client_ids_.knows(request); });
 }
 
 std::size_t RehearsalRunner::commands_waiting() const {
@@ -194,6 +209,7 @@ std::vector<std::optional<v1::CommandReply>> RehearsalRunner::repeated(const Sen
 void RehearsalRunner::run() {
     Rehearsal rehearsal{scenario_,   seed_, again_ ? again_->run.case_number : 0,
                         dictionary_, {},    again_ ? std::optional{again_->run.clock} : std::nullopt};
+    now_e_s_ = rehearsal.landing().sclk() - scenario_.entry_sclk;
     start_ = rehearsal.run_start(pace_);
     if (callbacks_.companion) companion_ = callbacks_.companion(rehearsal);
     if (again_) start_.forked_from = again_->fork ? again_->fork : again_->run.forked_from;
@@ -308,6 +324,7 @@ Result<void> RehearsalRunner::catch_up(Rehearsal& rehearsal) {
         }
         step(rehearsal);
     }
+    if (end_jump(rehearsal)) paused_ = true;  // it was cut off within it: the next act is the instructor's
     spdlog::info("run {} goes on from item {}, at E{:+.1f} s", run_id_.value, cut.last_seq, rehearsal.clocks().e_s());
     return {};
 }
@@ -351,6 +368,7 @@ Result<void> RehearsalRunner::fork(Rehearsal& rehearsal) {
     parent.last_seq = *last;
     if (at.seed != 0)
         if (const auto redrawn = rehearsal.redraw(at.seed); !redrawn) return given_up(redrawn.error().message);
+    end_jump(rehearsal);
     paused_ = again_->paused;
     spdlog::info("run {} goes on by itself from E{:+.1f} s", run_id_.value, rehearsal.clocks().e_s());
     return {};
@@ -404,11 +422,12 @@ void RehearsalRunner::fly(Rehearsal& rehearsal) {
         if (now - delivered_ >= delivery_interval || delivery_.entries.size() >= delivery_entries)
             archive_gave_up_ = archive_gave_up_ || !deliver(rehearsal, now);
     }
-    end_jump(rehearsal);
-    if (left_ && !stopped_ && !rehearsal.finished())
+    if (left_ && !stopped_ && !rehearsal.finished()) {
         leave(rehearsal);
-    else
+    } else {
+        end_jump(rehearsal);
         finish(rehearsal);
+    }
 }
 
 void RehearsalRunner::leave(const Rehearsal& rehearsal) {
@@ -451,18 +470,25 @@ void RehearsalRunner::carry_out(Rehearsal& rehearsal, const PauseRun& order) {
 
 void RehearsalRunner::carry_out(Rehearsal& rehearsal, const JumpRun& order) {
     end_jump(rehearsal);
-    if (!(order.to_e_s > now_e_s_)) return;  // passed since it was ordered
-    paused_ = false;
+    paused_ = !(order.to_e_s > now_e_s_);  // it has passed since it was ordered: hold here
+    if (paused_) return;
     jumps_from_e_s_ = now_e_s_;
     jumps_to_e_s_ = order.to_e_s;
+    keep_jump(rehearsal, order.to_e_s, true);
     spdlog::info("run {} jumps from {} to {}", run_id_.value, from_entry_text(now_e_s_), from_entry_text(order.to_e_s));
 }
 
-void RehearsalRunner::end_jump(const Rehearsal& rehearsal) {
-    if (jumps_to_e_s_.exchange(no_jump) == no_jump) return;
+bool RehearsalRunner::end_jump(const Rehearsal& rehearsal) {
+    if (jumps_to_e_s_.exchange(no_jump) == no_jump) return false;
+    keep_jump(rehearsal, now_e_s_, false);
+    return true;
+}
+
+void RehearsalRunner::keep_jump(const Rehearsal& rehearsal, double to_e_s, bool begins) {
     v1::KeptRequest kept;
     kept.mutable_jump()->set_from_e_s(jumps_from_e_s_);
-    kept.mutable_jump()->set_to_e_s(now_e_s_);
+    kept.mutable_jump()->set_to_e_s(to_e_s);
+    kept.mutable_jump()->set_begins(begins);
     keep(rehearsal, kept);
 }
 
@@ -568,6 +594,10 @@ void RehearsalRunner::tell_companion(const Rehearsal& rehearsal, const v1::KeptR
 bool RehearsalRunner::repeat(Rehearsal& rehearsal, const std::string& request) {
     const auto kept = archive::kept_request(request);
     tell_companion(rehearsal, kept);
+    if (kept.has_jump()) {
+        jumps_from_e_s_ = kept.jump().from_e_s();
+        jumps_to_e_s_ = kept.jump().begins() ? kept.jump().to_e_s() : no_jump;
+    }
     if (kept.has_intervention()) {
         const std::scoped_lock lock{mutex_};
         if (conductor_) conductor_->settle(kept.intervention().inject());

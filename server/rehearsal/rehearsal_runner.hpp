@@ -55,7 +55,8 @@ struct PlannedInjects {
 ///          When an item differs, the run stays interrupted and on_begun gets the Error (decision 0021)
 /// Fork     another run is flown again up to an instant, in the same way, and stored as a new one; from there on it goes
 ///          on by itself. When an item differs, the new run ends there and on_begun gets the Error (decision 0060)
-/// Jump     flown to a time as fast as possible and held there; kept as a request is, so that a score knows of it
+/// Jump     flown to a time as fast as possible and held there; kept as a request is, where it begins and ends, so that a
+///          score knows of it. A run that is continued or forked within one ends it there, and a continued one holds
 /// Plan     an instructor's injects are carried out at the cycles at which they are due, and kept as faults by hand are:
 ///          a run that is flown again has each once. Ground's own flight is told of none
 /// Faults   a run that cannot begin in the archive is not flown: on_begun gets the Error
@@ -152,9 +153,14 @@ class RehearsalRunner {
     /// Why the order is refused; empty: accepted. Call with mutex_ held.
     std::string refusal_of(const RunOrder& order) const;
     std::size_t commands_waiting() const;  ///< call with mutex_ held
+    /// Where a jump ends that goes on or is ordered. Call with mutex_ held.
+    std::optional<double> jump_under_way() const;
+    /// Whether all were accepted before, by their clients' ids. Call with mutex_ held.
+    bool knows_all(const std::vector<v1::CommandRequest>& requests) const;
     void count_pace_from(const Rehearsal& rehearsal, Clock::time_point now);
-    /// Ends a jump here, if there is one, and keeps it: from where, and to where it came.
-    void end_jump(const Rehearsal& rehearsal);
+    /// Ends a jump here, if there is one, and keeps where. @return whether there was one
+    bool end_jump(const Rehearsal& rehearsal);
+    void keep_jump(const Rehearsal& rehearsal, double to_e_s, bool begins);
     /// When the next cycle is due; always when there is no pace.
     Clock::time_point next_cycle_due(const Rehearsal& rehearsal, Clock::time_point now) const;
     void finish(Rehearsal& rehearsal);

@@ -17,6 +17,7 @@ constexpr std::size_t grid_octets_max = 1 << 20;
 constexpr std::size_t grid_nodes_max = 1 << 16;  // chosen: each run keeps the grid
 constexpr double cell_max_m = 10000.0;           // our assumption: coarser is no ground to land on
 constexpr double height_max_m = 10000.0;         // our assumption: nothing within reach of a target is as high
+constexpr double to_mm = 1000.0;                 // heights are kept to a millimetre, so that their text stays short
 constexpr double steepest_step = 5.0;            // our assumption: 79 degrees
 
 enum class GridKey : std::uint8_t { columns, rows, x_corner, x_center, y_corner, y_center, cell, none };
@@ -29,6 +30,11 @@ std::optional<double> finite_number(std::string_view word) {
     const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     return error == std::errc{} && stop == word.data() + word.size() && std::isfinite(value) ? std::optional{value}
                                                                                              : std::nullopt;
+}
+
+/// As grids of floating point say that there is no height.
+bool is_nan(std::string_view word) {
+    return word == "nan" || word == "NaN" || word == "NAN" || word == "-nan";
 }
 
 /// A text's lines, and their words.
@@ -102,13 +108,16 @@ Result<void> read_heights(const std::vector<std::string_view>& words, const Grid
                           double landing_m, double* heights_m) {
     const auto columns = static_cast<std::size_t>(*header[GridKey::columns]);
     if (words.size() != columns) return lines.error(fmt::format("{} heights, ncols says {}", words.size(), columns));
+    const auto none = [&](std::size_t column) {
+        return lines.error(
+            fmt::format("column {} has no height ({}): fill the grid or crop it", column + 1, words[column]));
+    };
     for (std::size_t column = 0; column < columns; ++column) {
         const auto value = finite_number(words[column]);
+        if (!value && is_nan(words[column])) return none(column);
         if (!value) return lines.error(fmt::format("'{}' is no number", words[column]));
-        if (header[GridKey::none] && *value == *header[GridKey::none])
-            return lines.error(
-                fmt::format("column {} has no height ({}): fill the grid or crop it", column + 1, words[column]));
-        heights_m[column] = *value - landing_m;
+        if (header[GridKey::none] && *value == *header[GridKey::none]) return none(column);
+        heights_m[column] = std::round((*value - landing_m) * to_mm) / to_mm + 0.0;
         if (!(std::abs(heights_m[column]) <= height_max_m))
             return lines.error(
                 fmt::format("column {} lies {:g} m from the landing radius, more than {:g}: other units, "
@@ -142,7 +151,7 @@ Result<simulation::HeightGrid> height_grid_from_text(std::string_view text, cons
     GridLines lines{text};
     GridHeader header;
     auto words = lines.next();
-    for (; !words.empty() && !finite_number(words.front()); words = lines.next()) {
+    for (; !words.empty() && !finite_number(words.front()) && !is_nan(words.front()); words = lines.next()) {
         const auto key = grid_key_of(words.front());
         if (!key)
             return lines.error(fmt::format("'{}' is none of ncols, nrows, xllcorner, xllcenter, yllcorner, yllcenter, "
@@ -151,6 +160,7 @@ Result<simulation::HeightGrid> height_grid_from_text(std::string_view text, cons
         auto& value = header.values.at(*key);
         if (value) return lines.error(fmt::format("{} is said twice", words.front()));
         if (words.size() == 2) value = finite_number(words[1]);
+        if (*key == static_cast<std::size_t>(GridKey::none) && words.size() == 2 && is_nan(words[1])) continue;
         if (!value) return lines.error(fmt::format("{} is followed by no number", words.front()));
     }
     if (const auto whole = check_header(header, lines); !whole) return whole.error();

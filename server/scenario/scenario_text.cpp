@@ -705,6 +705,10 @@ void clear_lists_of(const Message& message, Message& base) {
 /// Replaces the name of a grid by its heights.
 Result<void> fill_grid(v1::Ground& ground, const std::filesystem::path& folder) {
     const GridDatum datum{ground.grid_target_x_m(), ground.grid_target_y_m(), ground.grid_landing_m()};
+    for (const auto& [field, value] : {std::pair{"grid_target_x_m", datum.target_x_m},
+                                       {"grid_target_y_m", datum.target_y_m},
+                                       {"grid_landing_m", datum.landing_m}})
+        if (!std::isfinite(value)) return Error{fmt::format("ground.{}: {} is not a finite number", field, value)};
     ground.clear_grid_target_x_m();
     ground.clear_grid_target_y_m();
     ground.clear_grid_landing_m();
@@ -764,6 +768,10 @@ Result<v1::Scenario> whole(const std::filesystem::path& file, const std::filesys
     if (!shipped.empty() && !std::filesystem::exists(other, ignored)) other = shipped / (like + shipped_extension);
     auto base = whole(other, shipped, further - 1);
     if (!base) return refused(base.error().message);
+    if (message->has_target() && !base->ground().grid().empty() && message->ground().grid().empty())
+        return Error{fmt::format("{}: target: the grid of the ground of '{}' lies about another target: name its "
+                                 "grid_file again",
+                                 file.string(), like)};
     base->clear_name();  // the name is not inherited
     clear_lists_of(*message, *base);
     if (message->air_size() > 0) base->clear_density_scale();  // it belongs to the other's air

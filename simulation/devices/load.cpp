@@ -21,6 +21,8 @@ flight::Load load_for(const Scenario& truth) {
     load.entry_lift_to_drag = scenario.guidance.entry_lift_to_drag;
     load.divert_m = scenario.guidance.divert_m;
     load.divert_azimuth_deg = scenario.guidance.divert_azimuth_deg;
+    load.aim_east_m = scenario.guidance.aim_east_m;
+    load.aim_north_m = scenario.guidance.aim_north_m;
     if (truth.believed) load.gravity_fraction = truth.believed->gravity_fraction;
     load.entry_reference = make_entry_reference(scenario);
     return load;

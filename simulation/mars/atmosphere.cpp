@@ -95,12 +95,14 @@ Atmosphere::Atmosphere(std::span<const DensityScale> scales, std::span<const Air
 Atmosphere::Atmosphere(std::span<const DensityScale> scales, std::span<const AirRow> air,
                        const Dispersions& dispersions, Random random)
     : Atmosphere(scales, air) {
-    const double density_fraction = dispersions.density_fraction;
-    if (dispersions.density_aloft_fraction > 0.0 && density_fraction > 0.0)
-        aloft_growth_ = dispersions.density_aloft_fraction / density_fraction - 1.0;
-    departure_fraction_ = 0.8 * density_fraction * random.normal();
+    const double density_fraction = dispersions.density_fraction, drawn = random.normal();
+    departure_fraction_ = 0.8 * density_fraction * drawn;
     wave_fraction_ = 0.6 * std::numbers::sqrt2 * density_fraction;
     wave_phase_rad_ = 2.0 * std::numbers::pi * random.uniform();
+    if (dispersions.density_aloft_fraction > 0.0) {
+        aloft_departure_ = 0.8 * dispersions.density_aloft_fraction * drawn;
+        aloft_wave_ = 0.6 * std::numbers::sqrt2 * dispersions.density_aloft_fraction;
+    }
 }
 
 Air Atmosphere::at(double altitude_m) const {
@@ -114,12 +116,12 @@ Air Atmosphere::at(double altitude_m) const {
 }
 
 double Atmosphere::departure(double altitude_m) const {
-    if (wave_fraction_ == 0.0) return 1.0;
-    const double wave =
-        wave_fraction_ * std::sin(2.0 * std::numbers::pi * altitude_m / wave_length_m + wave_phase_rad_);
-    if (aloft_growth_ == 0.0) return std::max(0.2, 1.0 + departure_fraction_ + wave);
-    const double grown = 1.0 + aloft_growth_ * std::clamp((altitude_m - grows_from_m) / grows_over_m, 0.0, 1.0);
-    return std::max(0.2, 1.0 + grown * (departure_fraction_ + wave));
+    if (wave_fraction_ == 0.0 && aloft_wave_ == 0.0) return 1.0;
+    const double turn = std::sin(2.0 * std::numbers::pi * altitude_m / wave_length_m + wave_phase_rad_);
+    const double below = departure_fraction_ + wave_fraction_ * turn;
+    if (aloft_wave_ == 0.0) return std::max(0.2, 1.0 + departure_fraction_ + wave_fraction_ * turn);
+    const double part = std::clamp((altitude_m - grows_from_m) / grows_over_m, 0.0, 1.0);
+    return std::max(0.2, 1.0 + std::lerp(below, aloft_departure_ + aloft_wave_ * turn, part));
 }
 
 }  // namespace aeolis::simulation

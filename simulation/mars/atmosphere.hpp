@@ -36,6 +36,7 @@ class Atmosphere {
     /// The case's departure: at all heights alike, and the phase of its wave over height.
     double departure_fraction() const { return departure_fraction_; }
     double wave_phase_rad() const { return wave_phase_rad_; }
+    double aloft_departure() const { return aloft_departure_; }
 
   private:
     static constexpr std::size_t rows = 257;  ///< scale and table together, every kilometre from −2 km
@@ -45,7 +46,7 @@ class Atmosphere {
     std::array<double, rows> speed_of_sound_mps_{};
     double departure_fraction_ = 0.0, wave_fraction_ = 0.0, wave_phase_rad_ = 0.0;
     double shift_factor_ = 1.0;
-    double aloft_growth_ = 0.0;  ///< of the departure, from 50 to 65 km
+    double aloft_departure_ = 0.0, aloft_wave_ = 0.0;  ///< as above, from 65 km up
 };
 
 }  // namespace aeolis::simulation

@@ -55,6 +55,11 @@ HeightGrid::Rise HeightGrid::rise(double east_m, double north_m) const {
     return rise;
 }
 
+bool HeightGrid::holds(double east_m, double north_m) const {
+    const Place at = place_of(east_m, north_m);
+    return at.within_east && at.within_north;
+}
+
 bool HeightGrid::covers(double reach_m) const {
     const double east_m = shape_.west_m + static_cast<double>(shape_.columns - 1) * shape_.cell_m;
     const double north_m = shape_.south_m + static_cast<double>(shape_.rows - 1) * shape_.cell_m;

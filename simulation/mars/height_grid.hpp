@@ -32,6 +32,8 @@ class HeightGrid {
     Rise rise(double east_m, double north_m) const;
     /// No slope of the ground is steeper: a bound of the rise for each horizontal metre, in any direction.
     double steepest() const { return steepest_; }
+    /// Whether a place lies within the nodes.
+    bool holds(double east_m, double north_m) const;
     /// Whether the nodes lie around all places up to `reach_m` from the target, in any direction.
     bool covers(double reach_m) const;
 

@@ -44,14 +44,15 @@ Vector3 Terrain::normal(const Vector3& p) const {
 }
 
 Terrain::Meeting Terrain::meet_grid(const Vector3& p, const Vector3& direction_M) const {
-    constexpr double near_m = 0.01, reach_m = 50000.0;  // chosen: below any noise of a radar, and above its range
-    constexpr int steps_max = 200;                      // chosen: only rays that graze the ground take as many
+    constexpr double near_m = 0.01, near_fraction = 1.0e-5;  // chosen: below any noise of a radar
+    constexpr double reach_m = 50000.0;                      // chosen: above its range
+    constexpr int steps_max = 1000;  // chosen: at 65° over a grid with a slope of 7 a beam takes some 200
     const double steepest = grid_->steepest() + rise_M_.norm();
     double range_m = 0.0;
     for (int step = 0; step < steps_max && range_m < reach_m; ++step) {
         const Vector3 at = p + range_m * direction_M;
         const double over_m = height_m(at);
-        if (over_m < near_m) return {true, range_m, -direction_M.dot(normal(at))};
+        if (over_m < near_m + near_fraction * range_m) return {true, range_m, -direction_M.dot(normal(at))};
         // The ray comes no faster towards the ground than it falls, and than the ground rises below it.
         const double falls = -direction_M.dot(at) / at.norm();
         const double nears = falls + steepest * std::sqrt(std::max(0.0, 1.0 - falls * falls));

@@ -30,6 +30,11 @@ class Terrain {
     /// Unit normal of the ground there, pointing away from it.
     Vector3 normal(const Vector3& p_MoB_M) const;
 
+    /// Whether the ground below is that of the scenario, and not the edge of its grid that goes on.
+    bool is_known(const Vector3& p_MoB_M) const {
+        return !grid_ || grid_->holds(from_target_m(p_MoB_M, east_M_), from_target_m(p_MoB_M, north_M_));
+    }
+
     /// The first point where a ray from `p_MoB_M` along the unit vector `direction_M` meets the ground. Without a grid
     /// the ground is taken as the sphere that touches it below the start.
     struct Meeting {

@@ -91,7 +91,9 @@ TEST_CASE("what is wrong with a grid is told by its line, and what to look at", 
              {with("cellsize 100", "cellsize 0", whole), "a cellsize of 0 is not above 0 and up to 10000 m"},
              {with("-4480.5 ", "", whole), "line 8: 2 heights, ncols says 3"},
              {with("-4480.5", "-4480,5", whole), "line 8: '-4480,5' is no number"},
-             {with("-4480.5", "nan", whole), "line 8: 'nan' is no number"},
+             {with("-4480.5", "nan", whole), "line 8: column 2 has no height (nan): fill the grid or crop it"},
+             {with("-4490", "nan", whole), "line 8: column 1 has no height (nan): fill the grid or crop it"},
+             {with("-9999\n-4490", "nan\nNaN", whole), "line 8: column 1 has no height (NaN)"},
              {with("-4480.5", "-9999", whole), "line 8: column 2 has no height (-9999): fill the grid or crop it"},
              {with("-4480.5", "-32768", whole), "line 8: column 2 lies -28268 m from the landing radius"},
              {with("-4480.5", "-3900", whole), "line 8: beside column 1 the ground steps by 590 m within 100 m"},
@@ -160,6 +162,12 @@ TEST_CASE("a scenario names a grid beside it, holds it whole, and says which par
     REQUIRE(again->ground.grid);
     CHECK(grid_text(*again->ground.grid) == grid_text(*scenario->ground.grid));
 
+    // Another target under the same hills would be another place.
+    const auto moved =
+        scenario_from_file(file("moved.textproto", "name: \"moved\" like: \"hills\" target { latitude_deg: -4.5 }"));
+    REQUIRE_FALSE(moved.ok());
+    CHECK_THAT(moved.error().message, Catch::Contains("the grid of the ground of 'hills' lies about another target"));
+
     const auto refused = [&](const std::string& ground) {
         const auto none = scenario_of(ground);
         REQUIRE_FALSE(none.ok());
@@ -170,6 +178,8 @@ TEST_CASE("a scenario names a grid beside it, holds it whole, and says which par
         Catch::Contains("at the target it lies -4501 m over the landing radius: is that the zero of its heights"));
     CHECK_THAT(refused("grid_file: \"site.asc\" grid_landing_m: -4501"),
                Catch::Contains("ground.grid: does not reach 1000 m from the target to all sides"));
+    CHECK_THAT(refused("grid_file: \"site.asc\" grid_target_x_m: nan"),
+               Catch::Contains("ground.grid_target_x_m: nan is not a finite number"));
     CHECK_THAT(refused("grid_file: \"none.asc\""), Catch::Contains("none.asc: cannot be opened"));
     CHECK_THAT(refused("grid_file: \".\""), Catch::Contains("is a directory, not a grid"));
     CHECK_THAT(refused("grid_landing_m: 3"), Catch::Contains("ground.grid_file: missing"));

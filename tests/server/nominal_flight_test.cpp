@@ -116,12 +116,20 @@ TEST_CASE("scenarios that differ in faults, errors, losses and name are expected
     other.orbiter_outages = {{200.0, 30.0}};
     other.uhf_losses = {{200.0, 30.0, 0.5}};
     other.wind_shifts = {{200.0, 30.0, 5.0, 5.0}};
+    other.air_shifts = {{200.0, 30.0, -0.1}};
+    other.sensor_errors = {{flight::Device::imu, flight::Unit::a, 200.0, 30.0, 0.1, 0.0}};
     other.bus_message_error_fraction = 0.01;
     other.radio.uhf_loss_fraction = 0.5;
     other.radio.uplink_loss_fraction = 0.5;
     other.radio.delivery_restarts_after_touchdown_s = {60.0};
     other.radio.tones_from_samples = true;
     CHECK(scenario_to_text(expected_scenario(scenario)) == scenario_to_text(expected_scenario(other)));
+    // What is believed, ground flies by.
+    other.believed = simulation::Belief{
+        scenario.masses, scenario.density_scale, scenario.aero_scale, scenario.parachute_drag_area_m2, 3.0, 0.0};
+    CHECK(expected_scenario(other).steady_wind_east_mps == 3.0);
+    CHECK_FALSE(expected_scenario(other).believed);
+    other.believed.reset();
     other.commands.pop_back();
     CHECK(scenario_to_text(expected_scenario(scenario)) != scenario_to_text(expected_scenario(other)));
 }

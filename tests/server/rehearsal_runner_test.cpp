@@ -3,6 +3,7 @@
 
 #include "server/archive/kept_request.hpp"
 #include "server/archive/reader.hpp"
+#include "server/rehearsal/again_of.hpp"
 #include "server/rehearsal/rehearsal.hpp"
 #include "server/scenario/scenario_text.hpp"
 #include "server/shadow/shadow.hpp"
@@ -391,15 +392,15 @@ TEST_CASE(
         CHECK(held.clocks().e_s() == Approx(begin_e_s + 20.0).margin(2.0 / 64.0));
         CHECK(runner.order(JumpRun{begin_e_s + 5.0}).error().message.starts_with("jump: E−"));
 
-        // Pausing ends one where it is.
+        // Pausing ends one where it is. Commands are refused from when it is ordered.
         REQUIRE(runner.order(JumpRun{begin_e_s + 20000.0}).ok());
-        wait_until([](const auto& state) { return state.has_jumps_to_e_s(); });
         std::string refused;
         SendCommands order;
         order.requests.emplace_back().set_command("NO_OP");
         order.replies = [&](std::vector<v1::CommandReply> replies) { refused = replies.front().reason(); };
         CHECK(runner.order(std::move(order)).ok());
         CHECK_THAT(refused, Catch::StartsWith("the rehearsal jumps to E+"));
+        wait_until([](const auto& state) { return state.has_jumps_to_e_s(); });
         REQUIRE(runner.order(PauseRun{true}).ok());
         wait_until(
             [](const auto& state) { return state.state() == v1::RunState::paused && !state.has_jumps_to_e_s(); });
@@ -412,12 +413,82 @@ TEST_CASE(
     const auto jumps = reader->jumps(run);
     REQUIRE(jumps.ok());
     REQUIRE(jumps->size() == 2);
-    CHECK(jumps->at(0).to_e_s() - jumps->at(0).from_e_s() == Approx(20.0).margin(5.0));
-    CHECK(jumps->at(1).from_e_s() >= jumps->at(0).to_e_s());
+    CHECK(jumps->at(0).from_e_s() >= -scenario.start_before_entry_s);
+    CHECK(jumps->at(0).from_e_s() < -scenario.start_before_entry_s + 20.0);
+    CHECK(jumps->at(0).to_e_s() == Approx(-scenario.start_before_entry_s + 20.0).margin(2.0 / 64.0));
+    CHECK(jumps->at(1).from_e_s() == jumps->at(0).to_e_s());
+    CHECK_FALSE(jumps->at(1).begins());
     // Nothing of the flight is another by it.
     Rehearsal undisturbed{scenario, 7, 0, dictionary};
     while (!undisturbed.finished()) undisturbed.step();
     CHECK(undisturbed.digest() == digest);
+}
+
+TEST_CASE("a run that is cut off within a jump is continued where it was, and holds there",
+          "[rehearsal][threads][R59]") {
+    const test::TemporaryFolder folder;
+    const dictionary::Dictionary& dictionary = tests::shipped_dictionary();
+    const auto file = folder / "a.db";
+    const auto scenario = test::short_landing();
+    archive::RunId run;
+    const auto fly = [&](const auto& make, const auto& meanwhile) {
+        PipelineThread pipeline{std::move(archive::Archive::open(file)).value(), dictionary,
+                                PipelineThread::Faults::give_up, [](const auto&) {}};
+        std::mutex mutex;
+        std::optional<v1::RunState> told;
+        RehearsalRunner::Callbacks callbacks;
+        const auto take = [&](const v1::RunState& state) {
+            const std::scoped_lock lock{mutex};
+            told = state;
+        };
+        callbacks.on_begun = [&](Result<v1::RunState> state) {
+            REQUIRE(state.ok());
+            run = {static_cast<std::uint32_t>(state->run())};
+            take(*state);
+        };
+        callbacks.on_clocks = [](const auto&) {};
+        callbacks.on_state = take;
+        const auto runner = make(pipeline, callbacks);
+        meanwhile(*runner, [&](const auto& is_so) {
+            for (;; std::this_thread::sleep_for(std::chrono::milliseconds{1})) {
+                const std::scoped_lock lock{mutex};
+                if (told && is_so(*told)) return *told;
+            }
+        });
+    };
+    fly(
+        [&](PipelineThread& pipeline, RehearsalRunner::Callbacks callbacks) {
+            return std::make_unique<RehearsalRunner>(scenario, 7, 1.0, dictionary, pipeline, callbacks);
+        },
+        [&](RehearsalRunner& runner, const auto& wait_until) {
+            wait_until([](const auto&) { return true; });
+            REQUIRE(runner.order(JumpRun{-500.0}).ok());
+            wait_until([](const auto& state) { return state.clocks().e_s() > -890.0; });
+        });  // it is left, as when the server ends
+    auto reader = archive::Reader::open(file, dictionary);
+    REQUIRE(reader.ok());
+    REQUIRE(reader->jumps(run)->size() == 1);
+    CHECK(reader->jumps(run)->front().begins());
+    v1::StartRehearsal request;
+    request.set_continue_run(run.value);
+    auto again = again_of(request, *reader);
+    REQUIRE(again.ok());
+    fly(
+        [&](PipelineThread& pipeline, RehearsalRunner::Callbacks callbacks) {
+            return std::make_unique<RehearsalRunner>(scenario, std::move(*again), 1.0, dictionary, pipeline, callbacks);
+        },
+        [&](RehearsalRunner& runner, const auto& wait_until) {
+            const auto held = wait_until([](const auto& state) { return state.state() == v1::RunState::paused; });
+            CHECK_FALSE(held.has_jumps_to_e_s());
+            CHECK(held.clocks().e_s() > -890.0);
+            CHECK(held.clocks().e_s() < -500.0);
+            CHECK(runner.order(StopRun{}).ok());
+            wait_until([](const auto& state) { return state.state() == v1::RunState::finished; });
+        });
+    const auto jumps = reader->jumps(run);
+    REQUIRE(jumps->size() == 1);
+    CHECK_FALSE(jumps->front().begins());
+    CHECK(jumps->front().to_e_s() > -891.0);
 }
 
 TEST_CASE("a kept request comes back from its text, and another text is none", "[rehearsal][archive]") {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/campaign/targeting.hpp"
 
+#include "simulation/devices/load.hpp"
 #include "simulation/initial_state.hpp"
 #include "tests/simulation/gale.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/child_process.hpp"
+#include "tests/support/gnc_venue.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <cmath>
@@ -72,14 +74,16 @@ TEST_CASE("an aim that does not help ends after its rounds, and says that it did
     CHECK_THAT(none.error().message, Catch::Contains("0 of 0 cases landed by an aim of 0 m east and 0 m north"));
 }
 
-TEST_CASE("guidance is told the aim, and the miss counts from the target", "[campaign][targeting]") {
+TEST_CASE("guidance has the aim on board, and ground sends the target", "[campaign][targeting]") {
     const auto scenario = tests::undisturbed_scenario();
     CHECK(aim_of(scenario) == Aim{});
     const auto aimed = with_aim(scenario, {1000.0, -2000.0});
     CHECK(aim_of(aimed) == Aim{1000.0, -2000.0});
     CHECK(aimed.name == "gale-aim-1000e--2000n");
     CHECK(simulation::aimed_target(scenario).latitude_deg == scenario.target.latitude_deg);
-    const auto told = simulation::initial_state(aimed, 1, 0).solution.target;
+    CHECK(simulation::initial_state(aimed, 1, 0).solution.target.latitude_deg == scenario.target.latitude_deg);
+    CHECK(simulation::load_for(aimed).aim_north_m == -2000.0);
+    const auto told = simulation::aimed_target(aimed);
     const double radius_m = scenario.target.radius_m;
     CHECK((told.latitude_deg - scenario.target.latitude_deg) * simulation::degree_rad * radius_m ==
           Approx(-2000.0).margin(2.0));
@@ -87,6 +91,20 @@ TEST_CASE("guidance is told the aim, and the miss counts from the target", "[cam
               std::cos(scenario.target.latitude_deg * simulation::degree_rad) ==
           Approx(1000.0).margin(2.0));
     CHECK(aimed.target.latitude_deg == scenario.target.latitude_deg);
+}
+
+TEST_CASE("a vehicle that aims elsewhere lands as much elsewhere", "[campaign][targeting]") {
+    const auto landed_M = [](const simulation::Scenario& scenario) {
+        tests::GncVenue venue(scenario, 1);
+        venue.run();
+        REQUIRE(venue.world().outcome() == simulation::Outcome::touchdown);
+        return simulation::vector3(venue.world().truth().p_MoB_M_m);
+    };
+    const auto scenario = tests::undisturbed_scenario();
+    const auto at = landed_M(scenario), elsewhere = landed_M(with_aim(scenario, {1500.0, -800.0}));
+    const auto local = simulation::horizon(at);
+    CHECK((elsewhere - at).dot(local.east) == Approx(1500.0).margin(400.0));
+    CHECK((elsewhere - at).dot(local.north) == Approx(-800.0).margin(400.0));
 }
 
 TEST_CASE("aeolis entry target prints the rounds and the line for the scenario", "[campaign][targeting]") {
@@ -101,7 +119,8 @@ TEST_CASE("aeolis entry target prints the rounds and the line for the scenario",
     const auto ran = entry_target("--tolerance-m 300");
     INFO(ran.text);
     CHECK(ran.code == 0);
-    CHECK_THAT(ran.text, Catch::Contains("In the scenario:") && Catch::Contains("guidance { aim_east_m: "));
+    CHECK_THAT(ran.text, Catch::Contains("In the scenario (the mean of these 3 landings") &&
+                             Catch::Contains("guidance { aim_east_m: "));
     // What was flown is kept, and with one try the target is not met.
     const auto once = entry_target("--tolerance-m 1 --rounds 1");
     CHECK(once.code == 1);

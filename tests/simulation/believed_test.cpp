@@ -258,6 +258,10 @@ TEST_CASE("the departure of the air grows from 50 km to what it is aloft", "[sim
     CHECK(departure(grown, 65'000.0) == Approx(5.0 * departure(usual, 65'000.0)));
     CHECK(departure(grown, 110'000.0) == Approx(5.0 * departure(usual, 110'000.0)));
     CHECK(departure(usual, 65'000.0) != 0.0);
+    dispersions.density_fraction = 0.0;  // the air aloft alone
+    const Atmosphere alone{{}, {}, dispersions, Random{1, 3, Stream::density}};
+    CHECK(departure(alone, 30'000.0) == 0.0);
+    CHECK(departure(alone, 80'000.0) == Approx(departure(grown, 80'000.0)));
 }
 
 TEST_CASE("the parachute's area swings above Mach 1.4 alone, two times a second", "[simulation][parachute]") {

@@ -35,6 +35,8 @@ TEST_CASE("beyond its nodes a grid goes on as at its edge, level towards the out
     CHECK(small.height_m(-1.0e6, 0.0) == 10.0);
     CHECK(small.rise(-1.0e6, 0.0).east == 0.0);
     CHECK(small.rise(-1.0e6, 0.0).north == Approx(0.2));
+    CHECK(small.holds(50.0, 50.0));
+    CHECK_FALSE(small.holds(50.1, 0.0));
     CHECK(small.covers(50.0));
     CHECK_FALSE(small.covers(51.0));
 }

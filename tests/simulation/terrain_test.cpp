@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace simulation_terrain_test {
@@ -126,7 +127,7 @@ TEST_CASE("a ray meets the ground of a grid where it first comes to it, and nowh
         const auto meeting = terrain.meet(p, direction);
         if (!meeting.meets) continue;
         ++met;
-        CHECK(std::abs(terrain.height_m(p + meeting.range_m * direction)) < 0.02);
+        CHECK(std::abs(terrain.height_m(p + meeting.range_m * direction)) < 0.02 + 2e-5 * meeting.range_m);
         CHECK(meeting.incidence_cosine == Approx(-direction.dot(terrain.normal(p + meeting.range_m * direction))));
         for (double range_m = 0.0; range_m < meeting.range_m - 1.0; range_m += 2.0)
             REQUIRE(terrain.height_m(p + range_m * direction) > 0.0);
@@ -134,6 +135,23 @@ TEST_CASE("a ray meets the ground of a grid where it first comes to it, and nowh
     CHECK(met == 200);
     const Vector3 over = over_target(scenario, 500.0);
     CHECK_FALSE(terrain.meet(over, over.normalized()).meets);
+}
+
+TEST_CASE("one steep place far away takes no echo from a beam that is flat and high", "[simulation][terrain]") {
+    Scenario scenario = with_ground({});
+    std::vector<double> heights_m(101 * 101, 0.0);
+    heights_m[0] = 490.0;
+    scenario.ground.grid =
+        std::make_shared<const HeightGrid>(HeightGrid::Shape{101, 101, -5000.0, -5000.0, 100.0}, std::move(heights_m));
+    const Terrain terrain = terrain_of(scenario);
+    const Vector3 p = over_target(scenario, 8000.0);
+    const Horizon at = horizon(p);
+    for (const double off_deg : {0.0, 40.0, 65.0}) {
+        const auto meeting =
+            terrain.meet(p, -std::cos(off_deg * degree_rad) * at.up + std::sin(off_deg * degree_rad) * at.east);
+        REQUIRE(meeting.meets);
+        CHECK(meeting.range_m == Approx(8000.0 / std::cos(off_deg * degree_rad)).epsilon(0.01));
+    }
 }
 
 TEST_CASE("the normal of a grid's ground is across the slope that its heights have", "[simulation][terrain]") {
@@ -162,6 +180,13 @@ TEST_CASE("GNC lands softly on the hills of a grid, at the height that the grid 
     REQUIRE(touchdown);
     CHECK(touchdown->vertical_mps == Approx(0.75).margin(0.15));
     CHECK(touchdown->horizontal_mps <= 0.5);
+    CHECK(venue.world().outcome_reason() == "the rover stands, the descent stage is away");
+    // Beyond it the edge goes on, and that is said.
+    scenario.ground.grid =
+        std::make_shared<const HeightGrid>(HeightGrid::Shape{2, 2, -100.0, -100.0, 10.0}, std::vector<double>(4, 0.0));
+    tests::GncVenue beyond(scenario, 1);
+    beyond.run();
+    CHECK_THAT(beyond.world().outcome_reason(), Catch::StartsWith("the rover stands beyond the grid"));
 }
 
 TEST_CASE("GNC lands softly on ground that is higher, lower or tilted: the radar tells it",

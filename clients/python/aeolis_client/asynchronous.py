@@ -250,7 +250,7 @@ class AsyncClient:
         return await self._ask("RunState", "POST", "/rehearsals", {"scenario": scenario, "seed": seed, "pace": pace})
 
     async def control(self, **action: Any) -> None:
-        """One of pause=True, pause=False, pace=N, stop=True."""
+        """One of pause=True, pause=False, pace=N, jump="E-0:47:00", stop=True."""
         await self._answer("POST", "/api/v1/rehearsals/current", body=action)
 
     async def wait_for_end(self, run: Run = "latest", *, timeout_s: float = 3600.0) -> Any:

@@ -105,7 +105,8 @@ export function badNumbers(): string {
   if (what.value === UHF_LOSS && !within(percent.value, 0.1, 90)) return 'from 0.1 to 90 % of the octets';
   if (what.value === WIND && !(within(east.value, -100, 100) && within(north.value, -100, 100)))
     return 'a wind of −100 to 100 m/s';
-  if (what.value === AIR && !within(denser.value, -50, 100)) return 'from 50 % thinner (−50) to 100 % denser';
+  if (what.value === AIR && (!within(denser.value, -50, 100) || Number(denser.value) === 0))
+    return 'from 50 % thinner (−50) to 100 % denser, and not 0';
   if (measuresWrongly()) {
     if (!(within(offBy.value, -100, 100) && within(grows.value, -100, 100))) return 'amounts of −100 to 100';
     if (Number(offBy.value) === 0 && Number(grows.value) === 0) return 'an amount that is not 0';

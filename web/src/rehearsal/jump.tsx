@@ -8,15 +8,16 @@ import { fromEntry, readFromEntry } from '../run/time';
 const to = signal('');
 const problem = signal('');
 const busy = signal(false);
+const sure = signal(false); // that it flies past the landing
 
 /** The server's notation of a time from entry. */
 const asTold = (e_s: number): string => `E${e_s < 0 ? '-' : '+'}${Math.abs(e_s)}`;
 
-/** What is wrong with the time; empty: nothing. */
-export function badJump(text: string, now_e_s: number): string {
+/** What is wrong with the time; empty: nothing. Without the vehicle's clock the server says whether it has passed. */
+export function badJump(text: string, now_e_s: number | undefined): string {
   const e_s = readFromEntry(text);
   if (e_s === undefined) return 'a time from entry, such as E-0:47:00';
-  return e_s > now_e_s ? '' : `${fromEntry(e_s)} has passed at the vehicle`;
+  return now_e_s === undefined || e_s > now_e_s ? '' : `${fromEntry(e_s)} has passed at the vehicle`;
 }
 
 async function jump(run: number): Promise<void> {
@@ -25,6 +26,7 @@ async function jump(run: number): Promise<void> {
   try {
     await change('/rehearsals/current', { run, jump: asTold(readFromEntry(to.value) ?? NaN) });
     to.value = '';
+    sure.value = false;
   } catch (error) {
     problem.value = error instanceof Error ? error.message : String(error);
   } finally {
@@ -35,13 +37,17 @@ async function jump(run: number): Promise<void> {
 export function JumpForm() {
   const run = runNow();
   if (!run?.going) return null;
-  const bad = to.value === '' ? '' : badJump(to.value, (run.clocks?.eS ?? run.seenE) || 0);
+  const now_e_s = run.clocks?.eS;
+  const bad = to.value === '' ? '' : badJump(to.value, now_e_s);
+  const flies_past = bad === '' && (now_e_s ?? 0) < 0 && (readFromEntry(to.value) ?? -1) > 0;
   return (
     <form
       class="table-tools"
       onSubmit={(event) => {
         event.preventDefault();
-        if (to.value !== '' && bad === '' && !busy.value) void jump(run.id);
+        if (to.value === '' || bad !== '' || busy.value) return;
+        if (flies_past && !sure.value) sure.value = true;
+        else void jump(run.id);
       }}
     >
       <label title="flown as fast as possible, and held there; nobody can command meanwhile">
@@ -55,11 +61,12 @@ export function JumpForm() {
           onInput={(event) => {
             to.value = event.currentTarget.value;
             problem.value = '';
+            sure.value = false;
           }}
         />
       </label>
       <button type="submit" disabled={to.value === '' || bad !== '' || busy.value} data-testid="jump">
-        jump there
+        {sure.value ? '▲ press again: it flies past entry' : 'jump there'}
       </button>
       <span role="status" class={problem.value ? 'status-alarm' : 'status-dim'} data-testid="jump-words">
         {problem.value ? `✖ ${problem.value}` : bad ? `✖ ${bad}` : ''}

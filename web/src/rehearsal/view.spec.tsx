@@ -118,6 +118,11 @@ describe('a rehearsal', () => {
     });
     expect(server.asked.at(-1)?.body).toEqual({ run: 1, jump: 'E-30' });
     expect(field.value).toBe('');
+    type('E+0:47:00');
+    act(() => button('jump')?.click());
+    expect([server.asked.length, button('jump')?.textContent]).toEqual([1, '▲ press again: it flies past entry']);
+    type('E-0:00:20');
+    expect(button('jump')?.textContent).toBe('jump there');
     shown(aRun({ jumpsToES: -30 }));
     expect(button('attained')?.textContent).toBe('jumps to E−0:30');
   });
