@@ -261,7 +261,7 @@ TEST_CASE("what fell into a jump of time is not judged: nobody could act; a jump
     CHECK(points(judged(130.0, 400.0), "diagnosis").empty());
     CHECK(points(judged(105.0, 200.0), "detection").empty());
     CHECK(points(judged(-500.0, 105.0), "diagnosis").size() == expected);
-    CHECK(points(judged(180.0, 900.0), "diagnosis").size() == expected);
+    CHECK(points(judged(240.0, 900.0), "diagnosis").size() == expected);
     // What was done in time before it is earned.
     add_note(facts, 15.0, "radar");
     CHECK(points(judged(130.0, 400.0), "diagnosis").size() == 1);
