@@ -137,7 +137,7 @@ void Vehicle::add_to(PlacedState& state, Sclk start) const {
 
 void Vehicle::add_draws(const Scenario& scenario, std::vector<Draw>& draws) const {
     draws.push_back({"density_fraction", atmosphere_.departure_fraction()});
-    if (atmosphere_.aloft_departure() != 0.0)
+    if (atmosphere_.departure_fraction() == 0.0 && atmosphere_.aloft_departure() != 0.0)  // else one draw makes both
         draws.push_back({"density_aloft_fraction", atmosphere_.aloft_departure()});
     if (atmosphere_.departure_fraction() != 0.0 ||
         atmosphere_.aloft_departure() != 0.0)  // else there is no wave either
