@@ -53,7 +53,7 @@ export function JumpForm() {
       <label title="flown as fast as possible, and held there; nobody can command meanwhile">
         next act at{' '}
         <input
-          class="jump-to"
+          class="seed jump-to"
           data-testid="jump-to"
           placeholder="E-0:47:00"
           value={to.value}
