@@ -145,9 +145,9 @@ TEST_CASE("under the parachute it falls at the terminal speed of its drag area",
     const double terminal_mps = std::sqrt(2.0 * 2618.0 * 3.71 / (vehicle.flow().density_kgm3 * 205.0));
     CHECK(speed_mps > terminal_mps);
     CHECK(speed_mps < 1.06 * terminal_mps);
-    CHECK(vehicle.specific_force_M().norm() == Approx(0.5 * vehicle.flow().density_kgm3 * speed_mps * speed_mps *
-                                                      205.0 / 2618.0 * std::hypot(1.0, 0.17))
-                                                   .epsilon(1e-3));
+    CHECK(vehicle.specific_force_M().norm() ==
+          Approx(0.5 * vehicle.flow().density_kgm3 * speed_mps * speed_mps * 205.0 / 2618.0 * std::hypot(1.0, 0.17))
+              .epsilon(1e-3));
 }
 
 TEST_CASE("from the published mortar state the parachute takes the published time and speeds",
