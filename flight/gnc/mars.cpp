@@ -28,8 +28,8 @@ Vector3 free_acceleration(const Vector3& p_MoB_M, const Vector3& v_MB_M) {
 }
 
 Vector3 local_gravity(const Vector3& p_MoB_M, double fraction) {
-    constexpr double ends_m = 100'000.0;  // our assumption
-    const double part = 1.0 - (p_MoB_M.norm() - mars_equator_radius_m) / ends_m;
+    constexpr double local_gravity_ends_m = 100'000.0;  // our assumption
+    const double part = 1.0 - (p_MoB_M.norm() - mars_equator_radius_m) / local_gravity_ends_m;
     return fraction * std::clamp(part, 0.0, 1.0) * gravity(p_MoB_M);
 }
 

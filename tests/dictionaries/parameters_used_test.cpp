@@ -67,6 +67,7 @@ TEST_CASE("no module of EDL or of a device has a constant of its own that tunes 
         "reports_per_cycle_max",
         "kept_max",
         "heat_ratio",
+        "local_gravity_ends_m",
         "remembered_hz",
         "no_rotation",
         "no_thrust_mps2",

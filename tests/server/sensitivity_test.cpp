@@ -16,6 +16,9 @@ TEST_CASE("each error belongs to one group, and a group's scenario has its error
     simulation::Scenario scenario;
     scenario.name = "campaign";
     scenario.dispersions.terrain_height_m = 5.0;
+    scenario.dispersions.density_aloft_fraction = 0.2;
+    scenario.dispersions.parachute_oscillation_fraction = 0.1;
+    scenario.dispersions.radar_sand_mps = 0.5;
     scenario.dispersions.terrain_slope_deg = 0.0;
     std::set<std::string> fields;
     std::size_t count = 0;

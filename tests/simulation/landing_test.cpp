@@ -287,7 +287,8 @@ TEST_CASE("a wind that shifts carries the vehicle along, from then on and for as
 }
 
 TEST_CASE("air that is injected brakes otherwise while it lasts", "[simulation][faults]") {
-    const auto scenario = tests::gale_scenario(60.0);
+    auto scenario = tests::gale_scenario(60.0);
+    scenario.test_venue = TestVenue::gnc_alone;  // it enters without commands
     Landing calm{scenario, 1}, thin{scenario, 1};
     const auto speed_mps = [](const Landing& landing) {
         const auto v = landing.truth().v_MB_M_mps;

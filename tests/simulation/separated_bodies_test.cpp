@@ -75,7 +75,7 @@ TEST_CASE("a backshell under its parachute glides on as the parachute lifts, in 
         fly(0.5 * turn_s);
         return std::array{level_mps / sinks_mps, across_m, (level_of(backshell.at().p_MoB_M) - from).norm(), sinks_mps};
     };
-    const auto [slope, across_m, returned_m, sinks_mps] = glides(ParachuteLift{Vector3::UnitY(), 100.0, 0.0});
+    const auto [slope, across_m, returned_m, sinks_mps] = glides(ParachuteLift{Vector3::UnitY(), 100.0, 0.0, 0.17});
     const double slope_expected = 0.17 / std::hypot(1.0, turns_rps * sinks_mps / 3.71);
     CHECK(slope == Approx(slope_expected).epsilon(0.05));
     CHECK(across_m == Approx(2.0 * slope_expected * sinks_mps / turns_rps).epsilon(0.15));
