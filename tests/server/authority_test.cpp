@@ -179,6 +179,7 @@ const Message messages[] = {
     {R"({"subscribe":{}})", "observer", "welcome"},
     {R"({"control":{"start":{"scenario":"none of ours"}}})", "director", "none of ours"},
     {R"({"control":{"pause":true}})", "director", "no rehearsal goes on"},
+    {R"({"control":{"jump":"E-0:47:00"}})", "director", "no rehearsal goes on"},
     {R"({"control":{"pace":2}})", "director", "no rehearsal goes on"},
     {R"({"control":{"stop":true}})", "director", "no rehearsal goes on"},
     {R"({"control":{"inject":{"computer_reset":true}}})", "instructor", "no rehearsal goes on"},
