@@ -22,6 +22,8 @@
 #include <algorithm>
 #include <deque>
 #include <string>
+#include <type_traits>
+#include <variant>
 
 namespace aeolis::simulation {
 namespace {
@@ -626,30 +628,22 @@ void Landing::inject(Fault fault) {
         spell.begin_before_entry_s = s.scenario.entry_sclk - s.sclk();
         return spell;
     };
-    if (std::holds_alternative<ComputerReset>(fault)) {
-        s.scenario.computer_resets.push_back({before_entry_s});
-    } else if (auto* const device = std::get_if<DeviceFault>(&fault)) {
-        device->begin_before_entry_s = before_entry_s;
-        s.world.inject(*device);
-    } else if (auto* const system = std::get_if<SystemFault>(&fault)) {
-        system->begin_before_entry_s = before_entry_s;
-        s.world.inject(*system);
-    } else if (auto* const wind = std::get_if<WindShift>(&fault)) {
-        wind->begin_before_entry_s = before_entry_s;
-        s.world.inject(*wind);
-    } else if (auto* const air = std::get_if<AirShift>(&fault)) {
-        air->begin_before_entry_s = before_entry_s;
-        s.world.inject(*air);
-    } else if (auto* const sensor = std::get_if<SensorError>(&fault)) {
-        sensor->begin_before_entry_s = before_entry_s;
-        s.world.inject(*sensor);
-    } else if (const auto* const outage = std::get_if<StationOutage>(&fault)) {
-        s.scenario.station_outages.push_back(begin_now(*outage));
-    } else if (const auto* const orbiter = std::get_if<OrbiterOutage>(&fault)) {
-        s.scenario.orbiter_outages.push_back(begin_now(*orbiter));
-    } else {
-        s.scenario.uhf_losses.push_back(begin_now(std::get<UhfLoss>(fault)));
-    }
+    std::visit(
+        [&]<typename Kind>(Kind& kind) {
+            if constexpr (std::is_same_v<Kind, ComputerReset>) {
+                s.scenario.computer_resets.push_back({before_entry_s});
+            } else if constexpr (std::is_same_v<Kind, StationOutage>) {
+                s.scenario.station_outages.push_back(begin_now(kind));
+            } else if constexpr (std::is_same_v<Kind, OrbiterOutage>) {
+                s.scenario.orbiter_outages.push_back(begin_now(kind));
+            } else if constexpr (std::is_same_v<Kind, UhfLoss>) {
+                s.scenario.uhf_losses.push_back(begin_now(kind));
+            } else {
+                kind.begin_before_entry_s = before_entry_s;
+                s.world.inject(kind);
+            }
+        },
+        fault);
 }
 
 void Landing::run_prime_by(std::shared_ptr<flight::CycleRunner> runner) {

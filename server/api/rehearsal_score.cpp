@@ -71,15 +71,13 @@ class Judge {
         score_.set_sum(points);
         score_.set_rule(fmt::format(
             "A rule of Aeolis, no verdict on people: the rubric “{}”. The landing itself is worth {:.0f} of 100 "
-            "points; "
-            "the rest is the team's, over what there was to judge: if there was nothing of a kind, the others count "
-            "more, and if nothing was expected of anybody, the rest is not given. What nobody could see is not judged, "
-            "nor "
-            "what there was no time for, nor what fell into a jump of time, nor what people did once it was over. "
-            "What comes later than its limit earns less, and after twice the limit nothing; an alarm's acknowledgement "
-            "counts in full within {:.0f} s and not at all after {:.0f} s. A line of the log is found by its words, "
-            "and "
-            "serves one fault: read it, too. Times are the run's: at 10× a second of yours is ten of them.",
+            "points; the rest is the team's, over what there was to judge: if there was nothing of a kind, the others "
+            "count more, and if nothing was expected of anybody, the rest is not given. What nobody could see is not "
+            "judged, nor what there was no time for, nor what fell into a jump of time, nor what people did once it "
+            "was over. What comes later than its limit earns less, and after twice the limit nothing; an alarm's "
+            "acknowledgement counts in full within {:.0f} s and not at all after {:.0f} s. A line of the log is found "
+            "by its words, and serves one fault: read it, too. Times are the run's: at 10× a second of yours is ten of "
+            "them.",
             rubric_.title, rubric_.landing_worth, rubric_.alarm_within_s, rubric_.alarm_until_s));
         return std::move(score_);
     }

@@ -11,8 +11,9 @@ namespace aeolis::archive {
 
 namespace {
 
-// All tables except those of items (item_tables.hpp) and of links' totals (link_total_columns.hpp), explained in docs/archive.md. *_sclk: seconds of the spacecraft
-// clock; *_us: microseconds since 2000-01-01T12:00:00 UTC. key = run << 40 | seq.
+// All tables except those of items (item_tables.hpp) and of links' totals (link_total_columns.hpp), explained in
+// docs/archive.md. *_sclk: seconds of the spacecraft clock; *_us: microseconds since 2000-01-01T12:00:00 UTC.
+// key = run << 40 | seq.
 const char* const tables_sql = R"sql(
 CREATE TABLE dictionaries (
     dictionary INTEGER PRIMARY KEY, mission TEXT NOT NULL, timeline_version INTEGER NOT NULL) STRICT;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/campaign/campaign_order.hpp"
 #include "server/campaign/campaign_report.hpp"
 #include "server/campaign/case_hdf5.hpp"
 #include "server/campaign/sensitivity.hpp"
@@ -133,11 +132,9 @@ int sensitivity(const SensitivityOptions& options) {
     const auto said = [](const Error& error) { return failed("campaign sensitivity: " + error.message); };
     if (!options.out.empty())
         if (const auto possible = can_be_made(options.out); !possible) return said(possible.error());
-    const auto ready = flight_inputs(options.shared, options.scenario);
+    const auto ready = study_inputs(options.shared, options.scenario);
     if (!ready) return failed(ready.error().message);
     const auto& [dictionary, scenario] = *ready;
-    if (const auto many = campaign::check(scenario); !many)
-        return failed(options.scenario + ": " + many.error().message);
     stop_at_interrupt();
     const double course_deg = simulation::course_at_target_deg(scenario);
     std::vector<campaign::Influence> influences;

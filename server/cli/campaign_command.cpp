@@ -6,6 +6,7 @@
 #include "server/cli/long_work.hpp"
 #include "server/cli/options.hpp"
 #include "server/cli/shipped_paths.hpp"
+#include "server/cli/study.hpp"
 #include "server/cluster/case_collector.hpp"
 
 #include <algorithm>
@@ -66,11 +67,9 @@ Result<campaign::Call> flown(const CampaignOptions& options, const campaign::Ord
 
 /// Returns 0 when all cases are flown and the campaign passes by the scenario's limits.
 int run_campaign(const CampaignOptions& options) {
-    const auto ready = flight_inputs(options.shared, options.scenario);
+    const auto ready = study_inputs(options.shared, options.scenario);
     if (!ready) return failed(ready.error().message);
     const auto& [dictionary, scenario] = *ready;
-    if (const auto many = campaign::check(scenario); !many)
-        return failed(options.scenario + ": " + many.error().message);
 
     const campaign::Order order{
         scenario,

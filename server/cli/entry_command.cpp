@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/campaign/campaign_order.hpp"
 #include "server/campaign/targeting.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/long_work.hpp"
@@ -46,11 +45,9 @@ struct EntryTargetOptions {
 /// Moves the aim of guidance until the mean of the landings meets the target, and prints what to write into the
 /// scenario. Exit code 1: it was not met.
 int entry_target(const EntryTargetOptions& options) {
-    const auto ready = flight_inputs(options.shared, options.scenario);
+    const auto ready = study_inputs(options.shared, options.scenario);
     if (!ready) return failed(ready.error().message);
     const auto& [dictionary, scenario] = *ready;
-    if (const auto many = campaign::check(scenario); !many)
-        return failed(options.scenario + ": " + many.error().message);
     stop_at_interrupt();
     const auto targeting = [&] {
         ProgressLine line;

@@ -25,6 +25,14 @@ void add_study(CLI::App& command, StudyOptions& options) {
         ->capture_default_str();
 }
 
+Result<FlightInputs> study_inputs(const SharedOptions& shared, const std::string& scenario) {
+    auto inputs = flight_inputs(shared, scenario);
+    if (!inputs) return inputs;
+    if (const auto many = campaign::check(inputs->scenario); !many)
+        return Error{scenario + ": " + many.error().message};
+    return inputs;
+}
+
 Result<campaign::CaseTable> table_of(const std::filesystem::path& file) {
     const auto header = campaign::results_header(file);
     if (!header) return header.error();

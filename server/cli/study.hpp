@@ -5,11 +5,13 @@
 #include "dictionaries/dictionary.hpp"
 #include "server/campaign/case_table.hpp"
 #include "server/cli/long_work.hpp"
+#include "server/cli/shipped_paths.hpp"
 #include "simulation/scenario.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 namespace aeolis::server {
 
@@ -20,6 +22,9 @@ struct StudyOptions {
     std::filesystem::path folder = "run-data";
 };
 void add_study(CLI::App& command, StudyOptions& options);
+
+/// Dictionary and scenario for many cases. The Error names the scenario.
+Result<FlightInputs> study_inputs(const SharedOptions& shared, const std::string& scenario);
 
 /// All cases of a results file. The Error names the file.
 Result<campaign::CaseTable> table_of(const std::filesystem::path& file);

@@ -55,8 +55,9 @@ struct PlannedInjects {
 ///          When an item differs, the run stays interrupted and on_begun gets the Error (decision 0021)
 /// Fork     another run is flown again up to an instant, in the same way, and stored as a new one; from there on it goes
 ///          on by itself. When an item differs, the new run ends there and on_begun gets the Error (decision 0060)
-/// Jump     flown to a time as fast as possible and held there; kept as a request is, where it begins and ends, so that a
-///          score knows of it. A run that is continued or forked within one ends it there, and a continued one holds
+/// Jump     flown to a time as fast as possible and held there. It is kept as a request is, as it begins and as it
+///          ends, so that a score knows of it. A run that is continued or forked within one ends it there, and a
+///          continued one holds
 /// Plan     an instructor's injects are carried out at the cycles at which they are due, and kept as faults by hand are:
 ///          a run that is flown again has each once. Ground's own flight is told of none
 /// Faults   a run that cannot begin in the archive is not flown: on_begun gets the Error

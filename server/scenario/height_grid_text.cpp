@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/scenario/height_grid_text.hpp"
 
+#include "server/scenario/text_file.hpp"
+
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <fmt/format.h>
-#include <fstream>
 #include <iterator>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace aeolis::server {
@@ -206,16 +210,9 @@ std::string grid_text(const simulation::HeightGrid& grid) {
 }
 
 Result<simulation::HeightGrid> height_grid_from_file(const std::filesystem::path& file, const GridDatum& datum) {
-    std::error_code ignored;
-    if (std::filesystem::is_directory(file, ignored)) return Error{file.string() + ": is a directory, not a grid"};
-    std::ifstream from{file, std::ios::binary};
-    if (!from) return Error{file.string() + ": cannot be opened"};
-    std::string text(grid_octets_max + 1, '\0');
-    from.read(text.data(), static_cast<std::streamsize>(text.size()));
-    text.resize(static_cast<std::size_t>(from.gcount()));
-    if (text.size() > grid_octets_max)
-        return Error{fmt::format("{}: larger than {} octets: crop the grid", file.string(), grid_octets_max)};
-    auto grid = height_grid_from_text(text, datum);
+    const auto text = bounded_text(file, grid_octets_max, "grid");
+    if (!text) return text.error();
+    auto grid = height_grid_from_text(*text, datum);
     if (grid) return grid;
     const std::string& why = grid.error().message;
     constexpr std::string_view line = "line ";

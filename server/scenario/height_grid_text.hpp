@@ -8,8 +8,9 @@
 #include <string>
 #include <string_view>
 
-// Grids of heights in the ASCII form of ESRI: ncols, nrows, xllcorner or xllcenter, yllcorner or yllcenter, cellsize and,
-// if a value stands for none, NODATA_value, a line each; then the rows from north to south, each from west to east. [esri-grid]
+// Grids of heights in the ASCII form of ESRI [esri-grid]: ncols, nrows, xllcorner or xllcenter, yllcorner or yllcenter,
+// cellsize and, if a value stands for no height, NODATA_value, a line each; then the rows from north to south, each
+// from west to east.
 namespace aeolis::server {
 
 /// Where the target lies by the grid's own coordinates and heights. [m]

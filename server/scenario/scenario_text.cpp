@@ -3,11 +3,11 @@
 
 #include "server/scenario/air_table.hpp"
 #include "server/scenario/height_grid_text.hpp"
+#include "server/scenario/text_file.hpp"
 
 #include <chrono>
 #include <cmath>
 #include <fmt/format.h>
-#include <fstream>
 #include <google/protobuf/io/tokenizer.h>
 #include <google/protobuf/text_format.h>
 #include <initializer_list>
@@ -675,19 +675,6 @@ Result<Scenario> checked(const v1::Scenario& message, const std::string& file) {
     return Error{joined(faulty, file + ": ")};
 }
 
-Result<std::string> text_of(const std::filesystem::path& file) {
-    std::error_code error;
-    if (std::filesystem::is_directory(file, error)) return Error{file.string() + ": is a directory, not a scenario"};
-    std::ifstream stream{file, std::ios::binary};
-    if (!stream) return Error{file.string() + ": cannot be opened"};
-    std::string text(scenario_octets_max + 1, '\0');
-    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-    text.resize(static_cast<std::size_t>(stream.gcount()));
-    if (text.size() > scenario_octets_max)
-        return Error{fmt::format("{}: larger than {} octets: not a scenario", file.string(), scenario_octets_max)};
-    return text;
-}
-
 /// Clears the base's lists that the file has too, at any depth: a file's list replaces that of its base.
 void clear_lists_of(const Message& message, Message& base) {
     const auto& reflection = *message.GetReflection();
@@ -750,7 +737,7 @@ Result<void> fill_tables(v1::Scenario& message, const std::filesystem::path& fol
 
 /// The message with its base merged in, recursively; `further` bases are allowed.
 Result<v1::Scenario> whole(const std::filesystem::path& file, const std::filesystem::path& shipped, int further) {
-    const auto text = text_of(file);
+    const auto text = bounded_text(file, scenario_octets_max, "scenario");
     if (!text) return text.error();
     auto message = parsed(*text, file.string());
     if (!message) return message;

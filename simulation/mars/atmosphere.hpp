@@ -22,7 +22,8 @@ struct Air {
 /// Density is interpolated exponentially, temperature and scale linearly; outside the table its last layers continue.
 /// Range −1 … 250 km above the landing radius; above 250 km there is no air.
 /// The departure is our assumption: four fifths of the scenario's fraction at all heights alike, three fifths as a wave
-/// over height. Where the scenario has a larger fraction aloft, the departure grows evenly to it from 50 to 65 km. [facts]
+/// over height. Where the scenario has a fraction of its own aloft, the departure goes evenly to it from 50 to 65 km.
+/// [facts]
 class Atmosphere {
   public:
     /// Without departure. `air`: empty: Gale's.

@@ -184,6 +184,9 @@ TEST_CASE("a scenario names a grid beside it, holds it whole, and says which par
     CHECK_THAT(refused("grid: \"ncols 2\""), Catch::Contains("ground.grid: line 1: nrows is missing"));
     file("broken.asc", with("12.5", "x", map_of(60, 50.0)));
     CHECK_THAT(refused("grid_file: \"broken.asc\""), Catch::Contains("broken.asc:7: 'x' is no number"));
+    file("large.asc", std::string((1 << 20) + 1, ' '));
+    CHECK_THAT(refused("grid_file: \"large.asc\""),
+               Catch::Contains("large.asc: larger than 1048576 octets, which are all that a grid may have"));
     file("high.asc", map_of(60, 50.0, 0.0, 2500.0));
     CHECK_THAT(refused("grid_file: \"high.asc\""),
                Catch::Contains("ground.grid: at the target it lies 2500 m over the landing radius"));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The default layout. With vehicle/layout.ts, carrier/layout.ts and positions/layout.ts, which are loaded with their
-// panels, it is all that knows names of a mission. Each pick lists names in order of preference. If the dictionary has none of them, the panel
-// does without or takes the first channels.
+// panels, it is all that knows names of a mission. Each pick lists names in order of preference. If the dictionary has
+// none of them, the panel does without or takes the first channels.
 
 export const LAYOUT = {
   phase: ['edl_phase'],

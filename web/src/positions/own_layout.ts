@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The layout of a position: the one that ships, or a person's own of the position's name.
 import type { Layout } from '../layouts/model';
-import { layouts, loadLayouts, showLayout } from '../layouts/model';
+import { layouts, loadLayouts, problem, showLayout } from '../layouts/model';
 import { positionWords } from '../procedures/position';
+import { notify } from '../run/shown';
 import { POSITION_VIEWS } from './layout';
 
 /** The layout of a position: the person's own of its name in any case, else the one that ships. */
@@ -18,5 +19,7 @@ export function layoutOf(position: string, own: readonly Layout[]): Layout | und
 export async function showLayoutOf(position: string): Promise<void> {
   if (!layouts.value) await loadLayouts();
   const layout = layoutOf(position, layouts.value ?? []);
-  if (layout) showLayout(layout);
+  if (!layout) return;
+  showLayout(layout);
+  if (!layouts.value) notify(`${layout.name} as it ships, for ${problem.value}`);
 }

@@ -91,8 +91,9 @@ function sensorWords({ device, unit, duration_s, off_by, grows_per_s }: NonNulla
     ...(off_by ? [`${off_by} ${unitOf(device)}`] : []),
     ...(grows_per_s ? [`${grows_per_s} ${unitOf(device)} more each second`] : []),
   ];
+  const sensor = `${deviceWords(device)} ${unit.at(-1)}`;
   const measures = device === 'DEVICE_IMU' ? 'forces' : 'velocities';
-  return `${deviceWords(device)} ${unit.at(-1)} measures ${measures} wrongly by ${amounts.join(' and ')}, for ${duration_s} s`;
+  return `${sensor} measures ${measures} wrongly by ${amounts.join(' and ')}, for ${duration_s} s`;
 }
 
 const measuresWrongly = () => SENSORS.includes(what.value) && kind.value === WRONG;

@@ -221,8 +221,9 @@ export class RunStore {
     return at.ert_s + (sclk - at.sclk) * (this.run.clock?.rate || 1);
   }
   /**
-   * One instant on both clocks. A run that is over has no clocks any more. Then what was heard gives it: the first tone,
-   * whose SCLK is that of its beginning by light time, or the first live event, which was under way slightly longer.
+   * One instant on both clocks. A run that is over has no clocks any more. Then what was heard gives it: the first
+   * tone, whose SCLK is that of its beginning by light time, or the first live event, which was under way slightly
+   * longer.
    * Where neither is loaded, clock correlation and light time do, of a run whose entry is known: of a followed mission
    * the light time is not.
    */
