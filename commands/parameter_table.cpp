@@ -10,8 +10,12 @@
 
 namespace aeolis::commands {
 
-ParameterTable::ParameterTable(const dictionary::Dictionary& dictionary) : dictionary_(dictionary) {
-    for (const dictionary::ParameterRow& row : dictionary.parameters) values_.push_back(row.default_value);
+ParameterTable::ParameterTable(const dictionary::Dictionary& dictionary,
+                               std::span<const std::pair<ParameterId, double>> loaded)
+    : dictionary_(dictionary) {
+    for (const dictionary::ParameterRow& row : dictionary.parameters) built_in_.push_back(row.default_value);
+    for (const auto& [id, value] : loaded) built_in_.at(id.value) = value;
+    values_ = built_in_;
 }
 
 Result<void> ParameterTable::set(ParameterId id, double value) {
@@ -30,7 +34,7 @@ Result<void> ParameterTable::check_deviations() const {
     double sum = 0.0, largest = 0.0;
     std::string largest_name;
     for (const dictionary::ParameterRow& row : dictionary_.parameters) {
-        const double part = deviation(values_[row.id.value], row.default_value, row.min, row.max);
+        const double part = deviation(values_[row.id.value], built_in_[row.id.value], row.min, row.max);
         sum += part;
         if (part <= largest) continue;
         largest = part;

@@ -5,7 +5,8 @@
 #include "dictionaries/dictionary.hpp"
 
 #include <cstdint>
-#include <string_view>
+#include <span>
+#include <utility>
 #include <vector>
 
 // The parameter table as ground intends it: the values built in, and the changes made to them. Before flight activates
@@ -14,8 +15,10 @@ namespace aeolis::commands {
 
 class ParameterTable {
   public:
-    /// Starts with the values built in. `dictionary` must outlive the table.
-    explicit ParameterTable(const dictionary::Dictionary& dictionary);
+    /// Starts with the defaults of parameters.csv, but for those that the vehicle was loaded with instead, each within
+    /// its range. `dictionary` must outlive the table.
+    explicit ParameterTable(const dictionary::Dictionary& dictionary,
+                            std::span<const std::pair<ParameterId, double>> loaded = {});
 
     /// Sets the value of a row. Fails, with the reason, when the row is fixed or the value is outside its range; flight
     /// refuses the same.
@@ -31,7 +34,7 @@ class ParameterTable {
 
   private:
     const dictionary::Dictionary& dictionary_;
-    std::vector<double> values_;
+    std::vector<double> built_in_, values_;
 };
 
 }  // namespace aeolis::commands

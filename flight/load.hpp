@@ -60,7 +60,7 @@ struct Load {
     double gravity_fraction = 0.0;  ///< by which gravity is taken for stronger near the ground than `gnc::gravity`
     // NOLINTEND(readability-magic-numbers)
     EntryReference entry_reference;
-    Parameters parameters;  ///< until ground changes them
+    Parameters parameters;  ///< until ground changes them; of this vehicle, each within its range
 };
 
 /// Shift of the navigation state for a campaign case, as if its errors had existed from the start.

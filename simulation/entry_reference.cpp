@@ -72,8 +72,10 @@ double ground_step_m(const PointMass& before, const PointMass& after, double tar
 }
 
 /// Range from the start of SUFR: straightening up, the parachute, and the sidestep of the powered approach.
-double range_after_entry_m(const Scenario& scenario, const Atmosphere& atmosphere, PointMass at) {
+/// @param to_aim_m  along the ground from `at` to where guidance aims
+double range_after_entry_m(const Scenario& scenario, const Atmosphere& atmosphere, PointMass at, double to_aim_m) {
     const Masses& masses = scenario.masses;
+    const flight::Parameters& plan = scenario.parameters;
     double mass_kg = masses.entry_kg - 6.0 * masses.entry_balance_each_kg;
     bool heatshield = true;
     double ground_m = 0.0, since_mortar_s = -1.0;
@@ -82,13 +84,13 @@ double range_after_entry_m(const Scenario& scenario, const Atmosphere& atmospher
         const double altitude_m = at.p_MoB_M.norm() - scenario.target.radius_m;
         const double speed_mps = at.v_MB_M.norm();
         if (altitude_m <= scenario.backshell_altitude_m) break;
-        if (since_mortar_s < 0.0 && speed_mps <= scenario.parachute_speed_mps) since_mortar_s = 0.0;
-        if (heatshield && since_mortar_s >= EntryPlan::heatshield_after_mortar_s &&
-            speed_mps <= scenario.heatshield_speed_mps) {
+        const bool near = to_aim_m - ground_m <= plan.parachute_range_m && plan.parachute_range_m > 0.0;
+        if (since_mortar_s < 0.0 && (near || speed_mps <= scenario.parachute_speed_mps)) since_mortar_s = 0.0;
+        if (heatshield && since_mortar_s >= plan.heatshield_delay_min_s && speed_mps <= scenario.heatshield_speed_mps) {
             heatshield = false;
             mass_kg -= masses.heatshield_kg;
         }
-        const double straight = std::min(t / EntryPlan::sufr_duration_s, 1.0);
+        const double straight = std::min(t / plan.sufr_duration_s, 1.0);
         const auto force = [&](double, const Vector3& p, const Vector3& v) -> Vector3 {
             const Air air = atmosphere.at(p.norm() - scenario.target.radius_m);
             const double v_mps = v.norm();
@@ -113,38 +115,44 @@ double range_after_entry_m(const Scenario& scenario, const Atmosphere& atmospher
     }
     const Horizon local = horizon(at.p_MoB_M);
     const double level_mps = (at.v_MB_M - at.v_MB_M.dot(local.up) * local.up).norm();
-    return ground_m + level_mps * EntryPlan::free_fall_s +
+    return ground_m + level_mps * plan.powered_approach_delay_s +
            scenario.guidance.divert_m * std::cos(scenario.guidance.divert_azimuth_deg * degree_rad - azimuth_rad(at));
 }
 
 /// Derivatives of range_after_entry_m by the state at the start of SUFR.
-Costate range_slopes_after_entry(const Scenario& scenario, const Atmosphere& atmosphere, const PointMass& at) {
+Costate range_slopes_after_entry(const Scenario& scenario, const Atmosphere& atmosphere, const PointMass& at,
+                                 double to_aim_m) {
     constexpr double dh_m = 200.0, dgamma_rad = 0.5 * degree_rad;
     const Vector3 up = at.p_MoB_M.normalized();
     const auto range_m = [&](double h_m, double gamma_rad) {
         const Vector3 v = std::cos(gamma_rad) * at.v_MB_M +
                           std::sin(gamma_rad) * at.v_MB_M.norm() * lift_direction(at.p_MoB_M, at.v_MB_M, 0.0);
-        return range_after_entry_m(scenario, atmosphere, {at.p_MoB_M + h_m * up, v});
+        return range_after_entry_m(scenario, atmosphere, {at.p_MoB_M + h_m * up, v}, to_aim_m);
     };
     return {(range_m(dh_m, 0.0) - range_m(-dh_m, 0.0)) / (2.0 * dh_m),
             (range_m(0.0, dgamma_rad) - range_m(0.0, -dgamma_rad)) / (2.0 * dgamma_rad), 0.0};
 }
 
-Flight fly(const Scenario& scenario, const EntryFlight& flight, const Atmosphere& atmosphere, double held_rad) {
+/// @param range_m  along the ground from entry to where guidance aims
+Flight fly(const Scenario& scenario, const EntryFlight& flight, const Atmosphere& atmosphere, double range_m,
+           double held_rad) {
     Flight result;
-    const double end_mps = scenario.parachute_speed_mps + EntryPlan::sufr_above_parachute_mps;
+    const flight::Parameters& plan = scenario.parameters;
+    const double end_mps = scenario.parachute_speed_mps + scenario.guidance.reference_end_mps;
     PointMass at = nominal_entry(scenario);
     double ground_m = 0.0;
     bool slowing = false;
     for (double t = 0.0; t < longest_s; t += step_s) {
         const double speed_mps = at.v_MB_M.norm();
         const double bank_rad =
-            slowing ? reference_bank_rad(speed_mps, held_rad) : EntryPlan::bank_before_guidance_deg * degree_rad;
+            slowing ? reference_bank_rad(scenario, speed_mps, held_rad) : plan.bank_before_guidance_deg * degree_rad;
         const Sensed sensed = flight.sensed(at);
         const double climb_mps2 = free_fall(at.p_MoB_M, at.v_MB_M).dot(at.v_MB_M) / speed_mps;
         slowing = slowing || sensed.drag_mps2 - climb_mps2 >= least_deceleration_mps2;
         if (slowing) result.nodes.push_back(node_of(flight, at, ground_m, bank_rad));
-        if (speed_mps <= end_mps || flight.altitude_m(at) <= scenario.backshell_altitude_m) break;
+        const bool near = plan.parachute_range_m > 0.0 && speed_mps <= plan.sufr_low_speed_mps &&
+                          range_m - ground_m <= plan.parachute_range_m + plan.sufr_lead_s * speed_mps;
+        if (near || speed_mps <= end_mps || flight.altitude_m(at) <= scenario.backshell_altitude_m) break;
         const double upright = std::cos(bank_rad);
         const PointMass next = runge_kutta_step(at, step_s, [&](double, const Vector3& p, const Vector3& v) -> Vector3 {
             const Sensed by = flight.sensed({p, v});
@@ -154,7 +162,7 @@ Flight fly(const Scenario& scenario, const EntryFlight& flight, const Atmosphere
         at = next;
     }
     result.ground_at_end_m = ground_m;
-    result.after_m = range_after_entry_m(scenario, atmosphere, at);
+    result.after_m = range_after_entry_m(scenario, atmosphere, at, range_m - ground_m);
     result.end = at;
     return result;
 }
@@ -213,15 +221,18 @@ std::vector<double> row_measure(const std::vector<Node>& nodes) {
 
 }  // namespace
 
-double reference_bank_rad(double velocity_mps, double held_rad) {
-    constexpr double early_mps = 5300.0, held_from_mps = 4400.0, held_to_mps = 1100.0, up_at_mps = 980.0;
-    if (velocity_mps >= early_mps) return EntryPlan::bank_before_guidance_deg * degree_rad;
-    if (velocity_mps >= held_from_mps) {
-        const double part = (velocity_mps - held_from_mps) / (early_mps - held_from_mps);
-        return held_rad + part * (EntryPlan::bank_before_guidance_deg * degree_rad - held_rad);
+double reference_bank_rad(const Scenario& scenario, double velocity_mps, double held_rad) {
+    const Guidance& corners = scenario.guidance;
+    const double before_rad = scenario.parameters.bank_before_guidance_deg * degree_rad;
+    if (velocity_mps >= corners.reference_turn_mps) return before_rad;
+    if (velocity_mps >= corners.reference_held_from_mps) {
+        const double part = (velocity_mps - corners.reference_held_from_mps) /
+                            (corners.reference_turn_mps - corners.reference_held_from_mps);
+        return held_rad + part * (before_rad - held_rad);
     }
-    if (velocity_mps >= held_to_mps) return held_rad;
-    return held_rad * std::max(velocity_mps - up_at_mps, 0.0) / (held_to_mps - up_at_mps);
+    if (velocity_mps >= corners.reference_held_to_mps) return held_rad;
+    return held_rad * std::max(velocity_mps - corners.reference_up_mps, 0.0) /
+           (corners.reference_held_to_mps - corners.reference_up_mps);
 }
 
 flight::EntryReference make_entry_reference(const Scenario& scenario) {
@@ -235,10 +246,10 @@ flight::EntryReference make_entry_reference(const Scenario& scenario) {
     // Range falls smoothly with bank, so a few steps of the secant method find it to metres.
     constexpr double most_bank_rad = 100.0 * degree_rad;
     double before_rad = 35.0 * degree_rad, held_rad = 50.0 * degree_rad;
-    Flight best = fly(scenario, flight, atmosphere, before_rad);
+    Flight best = fly(scenario, flight, atmosphere, wanted_m, before_rad);
     double before_m = best.ground_at_end_m + best.after_m - wanted_m;
     for (int i = 0; i < 6; ++i) {
-        best = fly(scenario, flight, atmosphere, held_rad);
+        best = fly(scenario, flight, atmosphere, wanted_m, held_rad);
         const double over_m = best.ground_at_end_m + best.after_m - wanted_m;
         if (std::abs(over_m) < 10.0 || over_m == before_m) break;
         const double next_rad = held_rad - over_m * (held_rad - before_rad) / (over_m - before_m);
@@ -250,7 +261,7 @@ flight::EntryReference make_entry_reference(const Scenario& scenario) {
     // Integrates backwards along the flight by Heun's method.
     const std::vector<Node>& nodes = best.nodes;
     std::vector<Costate> costates(nodes.size());
-    costates.back() = range_slopes_after_entry(scenario, atmosphere, best.end);
+    costates.back() = range_slopes_after_entry(scenario, atmosphere, best.end, wanted_m - best.ground_at_end_m);
     const double radius_m = scenario.target.radius_m;
     for (std::size_t i = nodes.size() - 1; i > 0; --i) {
         const double dv = nodes[i - 1].velocity_mps - nodes[i].velocity_mps;

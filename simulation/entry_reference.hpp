@@ -8,8 +8,7 @@
 //
 // It flies in the simulation's own dynamics, under a bank profile chosen so that it ends at the target.
 //
-// Reference bank (our assumption, shaped as [od137] flew): 77° down to 5300 m/s, then in a straight line to a bank held
-// from 4400 to 1100 m/s, then lift up. The secant method on range finds the held bank. Only the vertical part of lift
+// Reference bank: by the corners of simulation/scenario.hpp, Guidance. The secant method on range finds the held bank. Only the vertical part of lift
 // is flown: the sideways part is assumed to cancel between reversals.
 //
 // Partials: with velocity V as the independent variable, y = (height, flight path angle), dy/dV = F, ds/dV = G, u the
@@ -20,20 +19,11 @@
 // Source: [apollo-entry-guidance] for the tables and their use, [bryson-1975] for the adjoint.
 namespace aeolis::simulation {
 
-/// Flight's plan as the reference assumes it. Simulation may not read flight's parameters; a test compares the two.
-struct EntryPlan {
-    static constexpr double bank_before_guidance_deg = 77.0;   // [facts]
-    static constexpr double sufr_above_parachute_mps = 48.0;   // [facts]: 453 against 405 m/s
-    static constexpr double sufr_duration_s = 14.0;            // [facts]
-    static constexpr double free_fall_s = 3.203125;            // [od137]: from backshell separation to powered approach
-    static constexpr double heatshield_after_mortar_s = 20.0;  // at least, by the timeline
-};
-
 /// Computes the reference. Rows ascend in velocity from the start of SUFR to where the vehicle begins to slow down. For
 /// a target out of reach the bank with the nearest end is used. Takes about 15 ms.
 flight::EntryReference make_entry_reference(const Scenario& scenario);
 
 /// The reference's bank [rad] at a velocity; `held_rad` is the bank that was found. For tests and reports.
-double reference_bank_rad(double velocity_mps, double held_rad);
+double reference_bank_rad(const Scenario& scenario, double velocity_mps, double held_rad);
 
 }  // namespace aeolis::simulation

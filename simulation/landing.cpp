@@ -351,6 +351,8 @@ void Landing::State::receive_tone(std::optional<ToneId> sent, std::int64_t cycle
     const double range_rate_mps = earth_range_rate_mps(vector3(truth.p_MoB_M_m), vector3(truth.v_MB_M_mps), truth.e_s);
     const double doppler_hz = -range_rate_mps / light_mps * x_band_hz;
     World::EarthView earth = world.earth_view();
+    for (const FalseTone& other : scenario.false_tones)
+        if (sent && goes_on(other, scenario.entry_sclk - sclk())) sent = other.tone;
     if (!world.x_band_sends_tones() || !x_band_telemetry.idle()) {
         sent.reset();
         earth.gain.reset();  // left out: the carrier of telemetry, which the tones' receiver is not set to
@@ -638,6 +640,8 @@ void Landing::inject(Fault fault) {
                 s.scenario.orbiter_outages.push_back(begin_now(kind));
             } else if constexpr (std::is_same_v<Kind, UhfLoss>) {
                 s.scenario.uhf_losses.push_back(begin_now(kind));
+            } else if constexpr (std::is_same_v<Kind, FalseTone>) {
+                s.scenario.false_tones.push_back(begin_now(kind));
             } else {
                 kind.begin_before_entry_s = before_entry_s;
                 s.world.inject(kind);

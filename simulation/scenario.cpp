@@ -96,6 +96,7 @@ std::vector<Bounded> bounded_fields(const Scenario& s) {
         {"dispersions.density_aloft_fraction", s.dispersions.density_aloft_fraction, 0.0, 0.5},
         {"dispersions.parachute_oscillation_fraction", s.dispersions.parachute_oscillation_fraction, 0.0, 0.5},
         {"dispersions.radar_sand_mps", s.dispersions.radar_sand_mps, 0.0, 10.0},
+        {"dispersions.terrain_roughness_m", s.dispersions.terrain_roughness_m, 0.0, 0.2 * s.ground.roughness_length_m},
         {"limits.propellant_left_min_kg", s.limits.propellant_left_min_kg, 0.0, 4000.0},
         {"limits.touchdown_vertical_max_mps", s.limits.touchdown_vertical_max_mps, 0.0, 10.0},
         {"limits.touchdown_horizontal_max_mps", s.limits.touchdown_horizontal_max_mps, 0.0, 10.0},
@@ -108,6 +109,7 @@ std::vector<Bounded> bounded_fields(const Scenario& s) {
         {"ground.height_m", s.ground.height_m, -1000.0, 1000.0},
         {"ground.slope_deg", s.ground.slope_deg, 0.0, 20.0},
         {"ground.uphill_azimuth_deg", s.ground.uphill_azimuth_deg, -180.0, 360.0},
+        {"ground.roughness_length_m", s.ground.roughness_length_m, 5.0, 5000.0},
         {"parachute_drag_area_m2", s.parachute_drag_area_m2, 1.0, 1000.0},
         {"parachute_lift_to_drag", s.parachute_lift_to_drag, 0.0, 1.0},
         {"wrist_damping_Nms", s.wrist_damping_Nms, 0.0, 20000.0},
@@ -121,6 +123,13 @@ std::vector<Bounded> bounded_fields(const Scenario& s) {
         {"guidance.engine_impulse_s", s.guidance.engine_impulse_s, 50.0, 500.0},
         {"guidance.aim_east_m", s.guidance.aim_east_m, -aim_max_m, aim_max_m},
         {"guidance.aim_north_m", s.guidance.aim_north_m, -aim_max_m, aim_max_m},
+        {"guidance.reference_turn_mps", s.guidance.reference_turn_mps, s.guidance.reference_held_from_mps, 20000.0},
+        {"guidance.reference_held_from_mps", s.guidance.reference_held_from_mps, s.guidance.reference_held_to_mps,
+         20000.0},
+        {"guidance.reference_held_to_mps", s.guidance.reference_held_to_mps, s.guidance.reference_up_mps + 1.0,
+         20000.0},
+        {"guidance.reference_up_mps", s.guidance.reference_up_mps, s.parachute_speed_mps, 20000.0},
+        {"guidance.reference_end_mps", s.guidance.reference_end_mps, 0.0, 500.0},
         {"steady_wind_east_mps", s.steady_wind_east_mps, -100.0, 100.0},
         {"steady_wind_north_mps", s.steady_wind_north_mps, -100.0, 100.0},
         {"radio.light_time_s", s.radio.light_time_s, 0.0, 1500.0},
@@ -160,6 +169,8 @@ void check_list_sizes(const Scenario& s, std::vector<std::string>& found) {
     if (s.believed) {
         at_most(scenario_rows_max, "believed.density_scale", s.believed->density_scale.size());
         at_most(scenario_rows_max, "believed.aero_scale", s.believed->aero_scale.size());
+        at_most(scenario_rows_max, "believed.air", s.believed->air.size());
+        at_most(scenario_rows_max, "believed.winds", s.believed->winds.size());
     }
     at_most(scenario_rows_max, "air", s.air.size());
     at_most(scenario_rows_max, "winds", s.winds.size());
@@ -174,6 +185,7 @@ void check_list_sizes(const Scenario& s, std::vector<std::string>& found) {
     at_most(scenario_rows_max, "wind_shifts", s.wind_shifts.size());
     at_most(scenario_rows_max, "air_shifts", s.air_shifts.size());
     at_most(scenario_rows_max, "sensor_errors", s.sensor_errors.size());
+    at_most(scenario_rows_max, "false_tones", s.false_tones.size());
     if (!found.empty()) return;
     for (std::size_t i = 0; i < s.radio.relay_passes.size(); ++i)
         at_most(scenario_rows_max, "radio.relay_passes[" + std::to_string(i) + "].rates",
@@ -198,6 +210,8 @@ void check_density_scale(const std::vector<DensityScale>& scales, std::vector<st
         const std::string name = "density_scale[" + std::to_string(i) + "]";
         if (!(scales[i].scale >= 0.1 && scales[i].scale <= 10.0))
             found.push_back(name + ".scale: " + number(scales[i].scale) + " is outside 0.1 … 10");
+        if (!(scales[i].deviation >= 0.0 && scales[i].deviation <= 0.5))
+            found.push_back(name + ".deviation: " + number(scales[i].deviation) + " is outside 0 … 0.5");
         if (!(scales[i].altitude_m >= -5000.0 && scales[i].altitude_m <= 250000.0))
             found.push_back(name + ".altitude_m: " + number(scales[i].altitude_m) + " is outside -5000 … 250000");
         if (i > 0 && !(scales[i].altitude_m > scales[i - 1].altitude_m))
@@ -493,6 +507,9 @@ bool disperses_later(const Scenario& scenario) {
 Scenario undispersed(Scenario scenario) {
     // Each of its fields is a deviation, so a new field cannot be forgotten.
     scenario.dispersions = std::bit_cast<Dispersions>(std::array<double, sizeof(Dispersions) / sizeof(double)>{});
+    for (DensityScale& row : scenario.density_scale) row.deviation = 0.0;
+    if (scenario.believed)
+        for (DensityScale& row : scenario.believed->density_scale) row.deviation = 0.0;
     return scenario;
 }
 
@@ -517,6 +534,8 @@ Scenario as_believed(Scenario scenario) {
     scenario.parachute_drag_area_m2 = belief.parachute_drag_area_m2;
     scenario.steady_wind_east_mps = belief.steady_wind_east_mps;
     scenario.steady_wind_north_mps = belief.steady_wind_north_mps;
+    scenario.air = belief.air;
+    scenario.winds = belief.winds;
     scenario.believed.reset();
     return scenario;
 }
@@ -556,6 +575,7 @@ void check_belief(const Scenario& scenario, std::vector<std::string>& found) {
     check_masses(world.masses, wrong);
     check_density_scale(world.density_scale, wrong);
     check_aero_scale(world.aero_scale, wrong);
+    check_air(world, wrong);
     const Belief& belief = *scenario.believed;
     for (const auto& [field, value, most] : {std::tuple{"gravity_fraction", belief.gravity_fraction, 0.01},
                                              {"position_east_m", belief.position_east_m, 50000.0},
@@ -598,9 +618,9 @@ std::vector<std::string> impossible_values(const Scenario& scenario) {
     check_tone_outages(scenario.radio.tone_outages, found);
     check_density_scale(scenario.density_scale, found);
     check_aero_scale(scenario.aero_scale, found);
-    check_belief(scenario, found);
     check_grid(scenario, found);
     check_air(scenario, found);
+    check_belief(scenario, found);
     check_dispersion_moment(scenario, found);
     check_commands(scenario, found);
     check_spells(scenario, scenario.system_faults, "system_faults", found);
@@ -610,6 +630,7 @@ std::vector<std::string> impossible_values(const Scenario& scenario) {
     check_wind_shifts(scenario, found);
     check_air_shifts(scenario, found);
     check_sensor_errors(scenario, found);
+    check_spells(scenario, scenario.false_tones, "false_tones", found);
     check_device_faults(scenario, found);
     check_computer_resets(scenario, found);
     check_test_venue(scenario, found);

@@ -107,6 +107,7 @@ struct Dispersions {
     double density_aloft_fraction = 0.0;  ///< of density from 65 km up, growing evenly from 50 km; 0: as below
     double parachute_oscillation_fraction = 0.0;  ///< of the swing of the parachute's area above Mach 1.4
     double radar_sand_mps = 0.0;                  ///< of velocity readings that moving sand spoils on the sky crane
+    double terrain_roughness_m = 0.0;             ///< of the ground's heights at the nodes of its roughness
 };
 
 /// The ground around the target, over the sphere of its radius. A case adds its own (Dispersions). Our assumption.
@@ -114,6 +115,7 @@ struct Ground {
     double height_m = 0.0;  ///< at the target
     double slope_deg = 0.0;
     double uphill_azimuth_deg = 0.0;           ///< direction of the rise, from north to east
+    double roughness_length_m = 50.0;          ///< between the nodes of the roughness that a case draws
     std::shared_ptr<const HeightGrid> grid{};  ///< adds its heights to the plane; none: there is the plane alone
 };
 
@@ -132,6 +134,14 @@ struct Guidance {
     double entry_lift_to_drag = 0.24;            ///< until the forces that are felt tell it
     double engine_impulse_s = 210.0;             ///< by which propellant is counted
     double aim_east_m = 0.0, aim_north_m = 0.0;  ///< where guidance aims, from the target
+    /// The bank of the reference, by speed: as before guidance down to the first, in a straight line to the one that is
+    /// held from the second to the third, then lift up, reached at the fourth. Our assumption, shaped as [od137] flew.
+    double reference_turn_mps = 5300.0;
+    double reference_held_from_mps = 4400.0;
+    double reference_held_to_mps = 1100.0;
+    double reference_up_mps = 980.0;
+    double reference_end_mps =
+        48.0;  ///< above the parachute's speed the reference ends, for SUFR. [facts] 453, 405 m/s
 };
 inline constexpr double aim_max_m = 20'000.0;  ///< our assumption: what a footprint's centre may be off
 
@@ -143,10 +153,13 @@ struct AeroScale {
     double lift = 1.0;
 };
 
-/// Atmosphere scale by height above the landing radius: density = table × scale.
+/// Atmosphere scale by height above the landing radius: density = table × scale. Linear between rows, held outside them.
 struct DensityScale {
     double altitude_m = 0.0;
     double scale = 1.0;
+    /// One standard deviation of a case's density, as a fraction. Where any row has one, they are in place of
+    /// Dispersions::density_fraction and density_aloft_fraction.
+    double deviation = 0.0;
 };
 
 /// The air at a height above the landing radius. Between rows density is interpolated exponentially, temperature
@@ -294,6 +307,13 @@ struct SensorError {
     double now(double before_entry_s) const { return off_by + grows_per_s * (begin_before_entry_s - before_entry_s); }
 };
 
+/// The vehicle sends this tone in place of its own while it sends tones: it says what is not so.
+struct FalseTone {
+    double begin_before_entry_s = 0.0;
+    double duration_s = 0.0;
+    ToneId tone{0};
+};
+
 /// Whether what begins and lasts so goes on now.
 template <typename Spell>
 bool goes_on(const Spell& spell, double before_entry_s) {
@@ -303,7 +323,7 @@ bool goes_on(const Spell& spell, double before_entry_s) {
 
 /// The faults that an instructor may inject during a landing.
 using Fault = std::variant<SystemFault, DeviceFault, ComputerReset, StationOutage, OrbiterOutage, UhfLoss, WindShift,
-                           AirShift, SensorError>;
+                           AirShift, SensorError, FalseTone>;
 
 /// The limits of a landing. A rover that lands outside them still stands; limits.hpp reports by how much they were
 /// exceeded.
@@ -345,6 +365,8 @@ struct Belief {
     double position_east_m = 0.0, position_north_m = 0.0, position_up_m = 0.0;
     /// Rotation vector in B from the true attitude to that of cruise. Added to what a case draws.
     double attitude_x_deg = 0.0, attitude_y_deg = 0.0, attitude_z_deg = 0.0;
+    std::vector<AirRow> air{};     ///< as of the scenario
+    std::vector<WindRow> winds{};  ///< as of the scenario
 };
 
 struct Scenario {
@@ -376,6 +398,7 @@ struct Scenario {
     std::vector<AeroScale> aero_scale;
     EngineDesign engines;
     Guidance guidance;
+    flight::Parameters parameters;   ///< that the vehicle is loaded with; each within its range by parameters.csv
     std::optional<Belief> believed;  ///< none: all is known as it is
     Radio radio;
     /// Ground keeps a flight of its own beside a run. None: the rehearsal chooses by its pace; elsewhere there is none.
@@ -396,6 +419,7 @@ struct Scenario {
     std::vector<WindShift> wind_shifts;
     std::vector<AirShift> air_shifts;
     std::vector<SensorError> sensor_errors;
+    std::vector<FalseTone> false_tones;
     double bus_message_error_fraction = 1.0e-4;  ///< of the messages on the buses, at each transmission. Our assumption
 };
 
@@ -407,7 +431,7 @@ inline constexpr std::size_t scenario_rows_max = 256;  ///< of any other list
 
 /// Whether the dispersions are drawn after the start, so that all cases share the flight up to then.
 bool disperses_later(const Scenario& scenario);
-/// The scenario with every seeded error of `dispersions` switched off.
+/// The scenario with every seeded error switched off: `dispersions`, and deviations of density by height.
 Scenario undispersed(Scenario scenario);
 /// Where entry guidance aims: the target, moved by what the scenario says.
 Target aimed_target(const Scenario& scenario);

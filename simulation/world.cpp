@@ -362,7 +362,7 @@ void World::State::watch() {
 World::World(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number)
     : state_(disperses_later(scenario) ? std::make_unique<State>(undispersed(scenario), seed, 0)
                                        : std::make_unique<State>(scenario, seed, case_number)) {
-    state_->scenario.dispersions = scenario.dispersions;
+    state_->scenario = scenario;  // from which a later dispersion draws
 }
 World::World(const World& other) : state_(std::make_unique<State>(*other.state_)) {}
 World& World::operator=(const World& other) {

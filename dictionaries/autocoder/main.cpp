@@ -11,10 +11,10 @@
 #include <iostream>
 #include <iterator>
 
-// aeolis_autocoder MSL_DIR OUT_DIR: writes dictionary_flight.hpp, state_machines.hpp, parameters.hpp, owners.hpp,
-// timeline.cpp and telemetry_plan.cpp, or prints every finding and writes nothing. Unchanged files are not rewritten,
-// so that a change of the autocoder alone does not recompile flight. Exit status: 0 done, 1 findings or not writable,
-// 2 bad usage.
+// aeolis_autocoder MSL_DIR OUT_DIR: writes dictionary_flight.hpp, state_machines.hpp, parameters.hpp,
+// parameter_names.hpp, owners.hpp, timeline.cpp and telemetry_plan.cpp, or prints every finding and writes nothing.
+// Unchanged files are not rewritten, so that a change of the autocoder alone does not recompile flight. Exit status:
+// 0 done, 1 findings or not writable, 2 bad usage.
 namespace {
 
 bool write(const std::filesystem::path& path, const std::string& text) {
@@ -47,6 +47,7 @@ int main(int argc, char** argv) {
         write(out / "dictionary_flight.hpp", dictionary::autocoder::flight_header(*loaded.dictionary)) &&
         write(out / "state_machines.hpp", dictionary::autocoder::state_machines_header(*loaded.dictionary)) &&
         write(out / "parameters.hpp", dictionary::autocoder::parameters_header(*loaded.dictionary)) &&
+        write(out / "parameter_names.hpp", dictionary::autocoder::parameter_names_header(*loaded.dictionary)) &&
         write(out / "owners.hpp", dictionary::autocoder::owners_header(*loaded.dictionary)) &&
         write(out / "timeline.cpp", dictionary::autocoder::timeline_source(*loaded.dictionary)) &&
         write(out / "telemetry_plan.cpp", dictionary::autocoder::telemetry_plan_source(*loaded.dictionary));

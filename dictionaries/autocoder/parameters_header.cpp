@@ -68,4 +68,15 @@ std::string parameters_header(const Dictionary& dictionary) {
     return out.str();
 }
 
+std::string parameter_names_header(const Dictionary& dictionary) {
+    std::ostringstream out;
+    out << made_by_autocoder(dictionary, "parameters.csv")
+        << "#pragma once\n\n#include <array>\n#include <string_view>\n\nnamespace aeolis::flight {\n\n/// By id.\n"
+           "inline constexpr std::array<std::string_view, "
+        << dictionary.parameters.size() << "> parameter_names{\n";
+    for (const ParameterRow& row : dictionary.parameters) out << "    \"" << row.name << "\",\n";
+    out << "};\n\n}  // namespace aeolis::flight\n";
+    return out.str();
+}
+
 }  // namespace aeolis::dictionary::autocoder

@@ -11,4 +11,7 @@ namespace aeolis::dictionary::autocoder {
 /// table of all parameters by id with their ranges. R25, R48
 std::string parameters_header(const Dictionary& dictionary);
 
+/// generated/parameter_names.hpp, for ground: the names of all parameters, by id.
+std::string parameter_names_header(const Dictionary& dictionary);
+
 }  // namespace aeolis::dictionary::autocoder

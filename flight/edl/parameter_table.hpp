@@ -46,6 +46,7 @@ CommandRefusal refusal_of(const gnc::Conditions& conditions);
 
 class ParameterTable {
   public:
+    /// @param built_in  what the vehicle was loaded with: the defaults of parameters.csv, unless its mission has others
     explicit ParameterTable(const Parameters& built_in) : values_(built_in), built_in_(built_in) {}
 
     const Parameters& values() const { return values_; }
@@ -68,7 +69,7 @@ class ParameterTable {
     /// State for another computer, without the built-in values, which are the same there.
     template <typename Exchange>
     void carry(Exchange& exchange) {
-        exchange.departures(values_, Parameters{});
+        exchange.departures(values_, built_in_);
         exchange(version_, changes_, staged_);
     }
 

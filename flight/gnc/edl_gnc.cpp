@@ -288,7 +288,8 @@ void EdlGnc::follow_configuration(const Configuration& configuration, Sclk now, 
 // Entry and parachute: decisions from the navigated state.
 void EdlGnc::decide_in_air(const Configuration& configuration, Sclk now, Output& out) {
     const Measured& m = measured_;
-    const triggers::InAir in_air{m.speed_mps, m.altitude_m, m.descent_rate_mps, m.dynamic_pressure_Pa, m.mach};
+    const triggers::InAir in_air{m.speed_mps,           m.altitude_m, m.descent_rate_mps,
+                                 m.dynamic_pressure_Pa, m.mach,       m.target.range_to_go_m};
     const triggers::ParachuteBounds parachute{solution_.parachute_speed_mps, solution_.parachute_altitude_min_m};
     const GncModeMachine& machine = mode_machine_;
     if (machine.can(GncModeEvent::drag_felt) &&

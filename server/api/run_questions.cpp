@@ -409,7 +409,7 @@ HttpResponse interventions(const AnswerContext& context, archive::Reader& reader
     return answer_rows({reader, run, query}, reader.interventions(run, {page->after, page->limit, page->order}),
                        {"interventions",
                         {"fault", "device_fault", "system_fault", "computer_reset", "station_outage", "orbiter_outage",
-                         "uhf_loss", "wind_shift", "air_shift", "sensor_error", "note", "skipped"}});
+                         "uhf_loss", "wind_shift", "air_shift", "sensor_error", "false_tone", "note", "skipped"}});
 }
 
 HttpResponse plan(const AnswerContext& context, archive::Reader& reader, archive::RunId run, const QueryText&) {

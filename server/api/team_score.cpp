@@ -70,6 +70,7 @@ double duration_s(const v1::FaultInjection& fault) {
     case v1::FaultInjection::kUhfLoss: return fault.uhf_loss().duration_s();
     case v1::FaultInjection::kWindShift: return fault.wind_shift().duration_s();
     case v1::FaultInjection::kAirShift: return fault.air_shift().duration_s();
+    case v1::FaultInjection::kFalseTone: return fault.false_tone().duration_s();
     case v1::FaultInjection::kSensorError: return fault.sensor_error().duration_s();
     case v1::FaultInjection::kComputerReset:
     case v1::FaultInjection::FAULT_NOT_SET: break;

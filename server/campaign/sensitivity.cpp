@@ -47,6 +47,7 @@ constexpr std::array error_fields{
     ErrorField{"radar_sand_mps", "radar", &Dispersions::radar_sand_mps},
     ErrorField{"terrain_height_m", "terrain", &Dispersions::terrain_height_m},
     ErrorField{"terrain_slope_deg", "terrain", &Dispersions::terrain_slope_deg},
+    ErrorField{"terrain_roughness_m", "terrain", &Dispersions::terrain_roughness_m},
 };
 static_assert(sizeof(Dispersions) == error_fields.size() * sizeof(double), "an error belongs to no group");
 
@@ -116,6 +117,8 @@ simulation::Scenario with_errors(const simulation::Scenario& scenario, const Err
     for (const ErrorField& field : error_fields)
         if (std::ranges::find(group.fields, field.name) != group.fields.end())
             only.dispersions.*field.member = scenario.dispersions.*field.member;
+    if (std::ranges::find(group.fields, "density_fraction") != group.fields.end())
+        only.density_scale = scenario.density_scale;  // its deviations stand for the fraction
     return only;
 }
 

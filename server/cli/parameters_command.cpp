@@ -5,6 +5,7 @@
 #include "server/cli/commands.hpp"
 #include "server/cli/options.hpp"
 #include "server/cli/shipped_paths.hpp"
+#include "server/scenario/loaded_parameters.hpp"
 
 #include "aeolis/v1/run.pb.h"
 
@@ -23,6 +24,7 @@ constexpr const char* stage_command = "EDL_STAGE_PARAMETER";
 
 struct ParametersOptions {
     std::filesystem::path directory = SharedOptions{}.dictionary;
+    std::string scenario;  ///< whose vehicle it is; none: one with the defaults
     std::uint16_t table = 0;
     std::vector<std::filesystem::path> after;  ///< the command files by which the table held was made, in their order
     std::vector<std::string> changes;          ///< "guidance_gain=4.0"
@@ -84,7 +86,13 @@ std::string line_of(const char* command, const Arguments& arguments = {}) {
 
 /// The command file that changes the table: whatever was staged is discarded first.
 Result<std::string> command_file(const ParametersOptions& options, const dictionary::Dictionary& dictionary) {
-    commands::ParameterTable table{dictionary};
+    std::vector<std::pair<ParameterId, double>> loaded;
+    if (!options.scenario.empty()) {
+        const auto scenario = scenario_given(options.scenario, SharedOptions{}.scenarios);
+        if (!scenario) return Error{"--scenario " + scenario.error().message};
+        loaded = loaded_parameters(scenario->parameters);
+    }
+    commands::ParameterTable table{dictionary, loaded};
     for (const auto& file : options.after)
         if (const auto applied = apply(file, table); !applied) return applied.error();
     std::string text = "{\"commands\": [\n" + line_of("EDL_DISCARD_PARAMETERS");
@@ -132,6 +140,8 @@ void add_parameters_command(CLI::App& program, int& exit_code) {
                     "command file that changed the table held; give each such file, in their order; if left out, the "
                     "table held is the one built in")
         ->allow_extra_args(false);
+    command.add_option("--scenario", options->scenario,
+                       "a file, or the name of a shipped one: its vehicle is loaded with parameters of its own");
     command.add_option("--dictionary", options->directory, "the dictionary's directory")->capture_default_str();
     command.callback([options, &exit_code] { exit_code = parameters(*options); });
 }

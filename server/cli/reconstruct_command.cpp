@@ -9,6 +9,7 @@
 #include "server/reconstruction/density.hpp"
 #include "server/reconstruction/path.hpp"
 #include "server/reconstruction/trajectory_files.hpp"
+#include "server/scenario/scenario_text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -70,6 +71,20 @@ Result<std::string> trajectory_of(reconstruction::TrajectoryFormat format, const
         std::chrono::system_clock::now() - std::chrono::sys_days{std::chrono::year{2000} / 1 / 1} -
         std::chrono::hours{12});
     return reconstruction::trajectory_file(format, states, clock, Scet{created.count()});
+}
+
+/// The vehicle as the run's scenario believes it to be; of a mission without a scenario the design.
+Result<reconstruction::KnownVehicle> vehicle_of(archive::Reader& reader, archive::RunId run) {
+    reconstruction::KnownVehicle vehicle;
+    const auto text = reader.scenario_text(run);
+    if (!text) return vehicle;
+    const auto scenario = scenario_from_text(*text, "the run's scenario");
+    if (!scenario) return scenario.error();
+    const simulation::Scenario believed = simulation::as_believed(*scenario);
+    vehicle.entry_mass_kg = believed.masses.entry_kg;
+    vehicle.balance_each_kg = believed.masses.entry_balance_each_kg;
+    for (const simulation::AeroScale& row : believed.aero_scale) vehicle.drag_scale.push_back({row.mach, row.drag});
+    return vehicle;
 }
 
 std::string csv_of(const Path& path, const std::vector<DensityPoint>& density) {
@@ -172,7 +187,9 @@ int reconstruct(const ReconstructOptions& options) {
     if (!read) return said(read.error());
     const auto path = reconstruction::reconstruct(*recorded, {}, site_of(options));
     if (!path) return said(path.error());
-    const auto density = reconstruction::density_along(*path, *recorded);
+    const auto vehicle = vehicle_of(*reader, run);
+    if (!vehicle) return said(vehicle.error());
+    const auto density = reconstruction::density_along(*path, *recorded, *vehicle);
     if (!options.out.empty()) {
         const auto format = reconstruction::trajectory_format_of(options.out.string());
         const auto octets = format ? trajectory_of(*format, *path, archive::correlation_of(*state))

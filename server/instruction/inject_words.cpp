@@ -100,6 +100,9 @@ std::string text_of(const v1::FaultInjection& injected) {
                            error.unit() == v1::REDUNDANT_UNIT_B ? 'B' : 'A', imu ? "forces" : "velocities", off,
                            seconds(error.duration_s()));
     }
+    case v1::FaultInjection::kFalseTone:
+        return fmt::format("the vehicle sends tone {} in place of its own, for {}", injected.false_tone().tone(),
+                           seconds(injected.false_tone().duration_s()));
     case v1::FaultInjection::FAULT_NOT_SET: break;
     }
     return "nothing";

@@ -36,6 +36,7 @@ class PlanReader : public TeamReader {
     void wind_shift(const YamlNode& node, v1::WindShift& shift);
     void air_shift(const YamlNode& node, v1::AirShift& shift);
     void sensor_error(const YamlNode& node, v1::SensorError& error);
+    void false_tone(const YamlNode& node, v1::FalseTone& tone);
     v1::FaultInjection fault(const YamlNode& node);
     std::vector<Inject> injects(const YamlNode& root, bool of_plan);
     Inject inject(const YamlNode& node, bool of_plan);
@@ -95,6 +96,21 @@ void PlanReader::sensor_error(const YamlNode& node, v1::SensorError& error) {
         add(node.mark, "an error of a sensor has 'off_by' or 'grows_per_s', which is not 0");
 }
 
+void PlanReader::false_tone(const YamlNode& node, v1::FalseTone& tone) {
+    static constexpr std::array must{std::string_view{"tone"}, std::string_view{"duration_s"}};
+    if (!table(node, "a false tone", must, {})) return;
+    if (const YamlNode* given = node.member("tone")) {
+        const std::string name = words(*given, "tone");
+        const auto row = std::ranges::find(dictionary_.tones, name, &dictionary::ToneRow::name);
+        if (row != dictionary_.tones.end() && !name.empty())
+            tone.set_tone(row->id.value);
+        else if (!name.empty())
+            add(given->mark, procedures::unknown_name(name, "tone", dictionary_.tones,
+                                                      [](const auto& one) { return std::string_view{one.name}; }));
+    }
+    tone.set_duration_s(duration_s(node, "duration_s"));
+}
+
 int PlanReader::enumerated(const YamlNode& node, std::string_view name, const google::protobuf::EnumDescriptor& all,
                            std::string_view prefix) {
     const YamlNode* given = node.member(name);
@@ -127,11 +143,12 @@ v1::FaultInjection PlanReader::fault(const YamlNode& node) {
         static constexpr std::array kinds{std::string_view{"station_outage_s"}, std::string_view{"orbiter_outage_s"},
                                           std::string_view{"system_fault_s"},   std::string_view{"computer_reset"},
                                           std::string_view{"uhf_loss"},         std::string_view{"wind_shift"},
-                                          std::string_view{"air_shift"},        std::string_view{"sensor_error"}};
+                                          std::string_view{"air_shift"},        std::string_view{"sensor_error"},
+                                          std::string_view{"false_tone"}};
         if (!table(node, "a fault", {}, kinds)) return read;
         if (node.keys.size() != 1)
             add(node.mark, "a fault is one of these: device, station_outage_s, orbiter_outage_s, system_fault_s, "
-                           "computer_reset, uhf_loss, wind_shift, air_shift, sensor_error");
+                           "computer_reset, uhf_loss, wind_shift, air_shift, sensor_error, false_tone");
         else if (node.member("station_outage_s") != nullptr)
             read.mutable_station_outage()->set_duration_s(duration_s(node, "station_outage_s"));
         else if (node.member("orbiter_outage_s") != nullptr)
@@ -144,6 +161,8 @@ v1::FaultInjection PlanReader::fault(const YamlNode& node) {
             air_shift(*air, *read.mutable_air_shift());
         else if (const YamlNode* sensor = node.member("sensor_error"))
             sensor_error(*sensor, *read.mutable_sensor_error());
+        else if (const YamlNode* tone = node.member("false_tone"))
+            false_tone(*tone, *read.mutable_false_tone());
         else if (node.member("system_fault_s") != nullptr)
             read.mutable_system_fault()->set_duration_s(duration_s(node, "system_fault_s"));
         else if (const YamlNode* reset = node.member("computer_reset"))

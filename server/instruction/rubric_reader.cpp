@@ -65,6 +65,7 @@ FaultHandling RubricReader::fault(const YamlNode& node) {
         std::pair{std::string_view{"uhf_loss"}, v1::FaultInjection::kUhfLoss},
         std::pair{std::string_view{"wind_shift"}, v1::FaultInjection::kWindShift},
         std::pair{std::string_view{"air_shift"}, v1::FaultInjection::kAirShift},
+        std::pair{std::string_view{"false_tone"}, v1::FaultInjection::kFalseTone},
         std::pair{std::string_view{"sensor_error"}, v1::FaultInjection::kSensorError},
         std::pair{std::string_view{"system_fault"}, v1::FaultInjection::kSystemFault},
         std::pair{std::string_view{"computer_reset"}, v1::FaultInjection::kComputerReset},

@@ -26,6 +26,17 @@ struct DensityErrors {
     double sigma_fraction_max = 0.3;  ///< where less is known, nothing is said. Our assumption
 };
 
+/// The entry vehicle as ground knows it: the design of 2012, unless the run's scenario believes another. [facts]
+struct KnownVehicle {
+    double entry_mass_kg = 3153.0;
+    double balance_each_kg = 25.0;
+    /// Drag by that of common/aeroshell, by Mach number: linear between rows, held outside them; none: 1.
+    struct DragScale {
+        double mach = 0.0, factor = 1.0;
+    };
+    std::vector<DragScale> drag_scale{};
+};
+
 struct DensityPoint {
     Sclk at;
     double altitude_m = 0.0;  ///< above the landing radius
@@ -40,6 +51,6 @@ struct DensityPoint {
 /// Each point lies in the middle of a step of the path. Of the recording it takes when the balance masses went and when
 /// the parachute was deployed.
 std::vector<DensityPoint> density_along(const Path& path, const RecordedLanding& recorded,
-                                        const DensityErrors& errors = {});
+                                        const KnownVehicle& vehicle = {}, const DensityErrors& errors = {});
 
 }  // namespace aeolis::reconstruction

@@ -178,6 +178,7 @@ simulation::Scenario expected_scenario(simulation::Scenario scenario) {
     scenario.uhf_losses.clear();
     scenario.wind_shifts.clear();
     scenario.air_shifts.clear();
+    scenario.false_tones.clear();
     scenario.sensor_errors.clear();
     scenario.bus_message_error_fraction = 0.0;
     scenario.radio.uhf_loss_fraction = 0.0;

@@ -28,19 +28,27 @@ NominalEntry fly_entry(const simulation::Scenario& scenario) {
     const simulation::Radio& radio = scenario.radio;
     const simulation::EntryFlight flight{scenario};
     simulation::PointMass at = simulation::nominal_entry(scenario);
+    const simulation::Target aim = simulation::aimed_target(scenario);
+    const simulation::Vector3 aim_M =
+        simulation::place(aim.latitude_deg * simulation::degree_rad, aim.longitude_deg * simulation::degree_rad, 1.0);
     NominalEntry entry;
     for (double t = 0.0; t < longest_entry_s; t += flown_step_s) {
         const double speed_mps = at.v_MB_M.norm();
         entry.parachute_s = t;
         entry.parachute_altitude_m = flight.altitude_m(at);
-        if (speed_mps <= scenario.parachute_speed_mps || entry.parachute_altitude_m <= scenario.backshell_altitude_m)
+        const double to_aim_m = aim.radius_m * std::acos(std::clamp(at.p_MoB_M.normalized().dot(aim_M), -1.0, 1.0));
+        const bool near = scenario.parameters.parachute_range_m > 0.0 &&
+                          speed_mps <= scenario.parameters.sufr_low_speed_mps &&
+                          to_aim_m <= scenario.parameters.parachute_range_m;
+        if (near || speed_mps <= scenario.parachute_speed_mps ||
+            entry.parachute_altitude_m <= scenario.backshell_altitude_m)
             break;
         const bool begun =
             entry.parachute_altitude_m < radio.blackout_start_altitude_m || speed_mps < radio.blackout_start_speed_mps;
         if (!entry.blackout && begun && speed_mps >= radio.blackout_end_speed_mps) entry.blackout = {t, t};
         if (entry.blackout && speed_mps >= radio.blackout_end_speed_mps) entry.blackout->to_s = t + flown_step_s;
         // Only the vertical part of lift counts: reversals alternate the lateral part.
-        const double upright = std::cos(simulation::reference_bank_rad(speed_mps, held_bank_rad));
+        const double upright = std::cos(simulation::reference_bank_rad(scenario, speed_mps, held_bank_rad));
         at = simulation::runge_kutta_step(
             at, flown_step_s,
             [&](double, const simulation::Vector3& p, const simulation::Vector3& v) -> simulation::Vector3 {

@@ -21,7 +21,7 @@ constexpr double law_tolerance = 0.2;            // our assumption: composition 
 constexpr double gap_max_m = 25'000.0;           // our assumption: three scale heights are no table
 constexpr std::size_t table_octets_max = 1 << 20;
 
-enum class Column : std::uint8_t { altitude, temperature, pressure, density, east, north, none };
+enum class Column : std::uint8_t { altitude, temperature, pressure, density, east, north, scale, deviation, none };
 struct Heading {
     std::string_view name;
     Column column;
@@ -29,10 +29,15 @@ struct Heading {
 };
 constexpr double metres_per_km = 1000.0;
 constexpr std::array headings{
-    Heading{"altitude_m", Column::altitude, 1.0},       Heading{"altitude_km", Column::altitude, metres_per_km},
-    Heading{"temperature_K", Column::temperature, 1.0}, Heading{"pressure_Pa", Column::pressure, 1.0},
-    Heading{"density_kgm3", Column::density, 1.0},      Heading{"east_mps", Column::east, 1.0},
+    Heading{"altitude_m", Column::altitude, 1.0},
+    Heading{"altitude_km", Column::altitude, metres_per_km},
+    Heading{"temperature_K", Column::temperature, 1.0},
+    Heading{"pressure_Pa", Column::pressure, 1.0},
+    Heading{"density_kgm3", Column::density, 1.0},
+    Heading{"east_mps", Column::east, 1.0},
     Heading{"north_mps", Column::north, 1.0},
+    Heading{"density_scale", Column::scale, 1.0},
+    Heading{"density_deviation", Column::deviation, 1.0},
 };
 constexpr std::array profile_columns{
     Heading{"height", Column::altitude, metres_per_km},
@@ -48,7 +53,7 @@ constexpr std::array profile_columns{
 /// A row in SI units; what a table does not have is none.
 struct TableRow {
     std::size_t line = 0;
-    std::array<std::optional<double>, 6> values;
+    std::array<std::optional<double>, static_cast<std::size_t>(Column::none)> values;
     std::optional<double> operator[](Column column) const { return values.at(static_cast<std::size_t>(column)); }
     std::optional<double>& at(Column column) { return values.at(static_cast<std::size_t>(column)); }
 };
@@ -133,7 +138,7 @@ class TableReader {
             if (known == headings.end())
                 return at(number,
                           fmt::format("column '{}' is none of altitude_m, altitude_km, temperature_K, pressure_Pa, "
-                                      "density_kgm3, east_mps, north_mps",
+                                      "density_kgm3, east_mps, north_mps, density_scale, density_deviation",
                                       word));
             if (has(known->column)) return at(number, fmt::format("column '{}' says again what another does", word));
             columns_.push_back(*known);
@@ -212,6 +217,9 @@ Result<AirTable> air_table_from_file(const std::filesystem::path& file, double l
         if (!air) return reader.at(row.line, air.error().message);
         air->altitude_m -= landing_m;
         table.air.push_back(*air);
+        if (reader.has(Column::scale) || reader.has(Column::deviation))
+            table.scale.push_back(
+                {air->altitude_m, row[Column::scale].value_or(1.0), row[Column::deviation].value_or(0.0)});
         if (blows) table.winds.push_back({air->altitude_m, *row[Column::east], *row[Column::north]});
     }
     return table;

@@ -3,6 +3,7 @@
 
 #include "server/scenario/air_table.hpp"
 #include "server/scenario/height_grid_text.hpp"
+#include "server/scenario/loaded_parameters.hpp"
 #include "server/scenario/text_file.hpp"
 
 #include <chrono>
@@ -11,6 +12,7 @@
 #include <google/protobuf/io/tokenizer.h>
 #include <google/protobuf/text_format.h>
 #include <initializer_list>
+#include <limits>
 #include <memory>
 #include <sstream>
 #include <utility>
@@ -49,6 +51,7 @@ const Bindings<simulation::Ground> ground_fields = {
     AEOLIS_BIND(Ground, height_m),
     AEOLIS_BIND(Ground, slope_deg),
     AEOLIS_BIND(Ground, uphill_azimuth_deg),
+    AEOLIS_BIND(Ground, roughness_length_m),
 };
 const Bindings<simulation::EngineDesign> engine_fields = {
     AEOLIS_BIND(EngineDesign, largest_thrust_N),
@@ -57,9 +60,17 @@ const Bindings<simulation::EngineDesign> engine_fields = {
     AEOLIS_BIND(EngineDesign, most_impulse_s),
 };
 const Bindings<simulation::Guidance> guidance_fields = {
-    AEOLIS_BIND(Guidance, divert_m),           AEOLIS_BIND(Guidance, divert_azimuth_deg),
-    AEOLIS_BIND(Guidance, entry_lift_to_drag), AEOLIS_BIND(Guidance, engine_impulse_s),
-    AEOLIS_BIND(Guidance, aim_east_m),         AEOLIS_BIND(Guidance, aim_north_m),
+    AEOLIS_BIND(Guidance, divert_m),
+    AEOLIS_BIND(Guidance, divert_azimuth_deg),
+    AEOLIS_BIND(Guidance, entry_lift_to_drag),
+    AEOLIS_BIND(Guidance, engine_impulse_s),
+    AEOLIS_BIND(Guidance, aim_east_m),
+    AEOLIS_BIND(Guidance, aim_north_m),
+    AEOLIS_BIND(Guidance, reference_turn_mps),
+    AEOLIS_BIND(Guidance, reference_held_from_mps),
+    AEOLIS_BIND(Guidance, reference_held_to_mps),
+    AEOLIS_BIND(Guidance, reference_up_mps),
+    AEOLIS_BIND(Guidance, reference_end_mps),
 };
 const Bindings<simulation::AeroScale> aero_fields = {
     AEOLIS_BIND(AeroScale, mach),
@@ -126,6 +137,7 @@ const Bindings<simulation::Dispersions> dispersion_fields = {
     AEOLIS_BIND(Dispersions, density_aloft_fraction),
     AEOLIS_BIND(Dispersions, parachute_oscillation_fraction),
     AEOLIS_BIND(Dispersions, radar_sand_mps),
+    AEOLIS_BIND(Dispersions, terrain_roughness_m),
 };
 const Bindings<simulation::Limits> limit_fields = {
     AEOLIS_BIND(Limits, propellant_left_min_kg),
@@ -178,6 +190,7 @@ const Bindings<simulation::WindRow> wind_fields = {
 const Bindings<simulation::DensityScale> density_fields = {
     AEOLIS_BIND(DensityScale, altitude_m),
     AEOLIS_BIND(DensityScale, scale),
+    AEOLIS_BIND(DensityScale, deviation),
 };
 const Bindings<simulation::SystemFault> fault_fields = {
     AEOLIS_BIND(SystemFault, begin_before_entry_s),
@@ -226,6 +239,10 @@ const Bindings<simulation::RelayPass> pass_fields = {
 const Bindings<simulation::TrackingPass> tracking_fields = {
     AEOLIS_BIND(TrackingPass, begin_after_entry_s),
     AEOLIS_BIND(TrackingPass, end_after_entry_s),
+};
+const Bindings<simulation::FalseTone> false_tone_fields = {
+    AEOLIS_BIND(FalseTone, begin_before_entry_s),
+    AEOLIS_BIND(FalseTone, duration_s),
 };
 const Bindings<simulation::ComputerReset> reset_fields = {
     AEOLIS_BIND(ComputerReset, before_entry_s),
@@ -348,6 +365,15 @@ void write_sensor_error(const simulation::SensorError& error, v1::SensorError& r
     write(error, sensor_error_fields, row);
 }
 
+Result<simulation::FalseTone> false_tone_from_message(const v1::FalseTone& row, const std::string& name) {
+    if (row.tone() > std::numeric_limits<std::uint8_t>::max())
+        return Error{fmt::format("{}.tone: {} is no id of a tone", name, row.tone())};
+    simulation::FalseTone tone;
+    read(row, false_tone_fields, tone);
+    tone.tone = ToneId{static_cast<std::uint8_t>(row.tone())};
+    return tone;
+}
+
 /// What begins with the next cycle and lasts.
 template <typename Spell, typename Message>
 Result<simulation::Fault> spell_now(const Message& message, const Bindings<Spell>& fields, const char* name) {
@@ -385,10 +411,17 @@ Result<simulation::Fault> read_fault(const v1::FaultInjection& message) {
         if (!error) return error.error();
         return simulation::Fault{*error};
     }
+    case v1::FaultInjection::kFalseTone: {
+        if (message.false_tone().begin_before_entry_s() != 0.0)
+            return Error{"false_tone.begin_before_entry_s: it begins now"};
+        auto tone = false_tone_from_message(message.false_tone(), "false_tone");
+        if (!tone) return tone.error();
+        return simulation::Fault{*tone};
+    }
     case v1::FaultInjection::FAULT_NOT_SET: break;
     }
     return Error{"the injection says nothing: device_fault, system_fault, computer_reset, station_outage, "
-                 "orbiter_outage, uhf_loss, wind_shift, air_shift or sensor_error is wanted"};
+                 "orbiter_outage, uhf_loss, wind_shift, air_shift, sensor_error or false_tone is wanted"};
 }
 
 void write_device_fault(const simulation::DeviceFault& fault, v1::DeviceFault& row) {
@@ -459,6 +492,12 @@ simulation::Belief belief_of(const v1::Belief& message, const Scenario& truth) {
                               truth.parachute_drag_area_m2,
                               truth.steady_wind_east_mps,
                               truth.steady_wind_north_mps};
+    belief.air = truth.air;
+    belief.winds = truth.winds;
+    if (message.air_size() > 0) belief.air.clear(), belief.density_scale.clear();  // it scaled the other air
+    for (const auto& row : message.air()) read(row, air_fields, belief.air.emplace_back());
+    if (message.winds_size() > 0) belief.winds.clear();
+    for (const auto& row : message.winds()) read(row, wind_fields, belief.winds.emplace_back());
     read(message.masses(), mass_fields, belief.masses);
     if (message.density_scale_size() > 0) belief.density_scale.clear();
     for (const auto& row : message.density_scale()) read(row, density_fields, belief.density_scale.emplace_back());
@@ -468,10 +507,21 @@ simulation::Belief belief_of(const v1::Belief& message, const Scenario& truth) {
     return belief;
 }
 
+/// Whoever is not in a folder cannot name a file beside it. Of a Scenario, or a Belief.
+template <typename OfAir>
+Result<void> refuse_table_names(const OfAir& message) {
+    if (!message.air_table().empty()) return Error{"air_table: only a file can name another"};
+    if (!message.wind_table().empty()) return Error{"wind_table: only a file can name another"};
+    if (message.air_table_landing_m() != 0.0) return Error{"air_table_landing_m: only a file can name a table"};
+    return {};
+}
+
 void write_belief(const simulation::Belief& belief, v1::Belief& message) {
     write(belief.masses, mass_fields, *message.mutable_masses());
     for (const auto& row : belief.density_scale) write(row, density_fields, *message.add_density_scale());
     for (const auto& row : belief.aero_scale) write(row, aero_fields, *message.add_aero_scale());
+    for (const auto& row : belief.air) write(row, air_fields, *message.add_air());
+    for (const auto& row : belief.winds) write(row, wind_fields, *message.add_winds());
     write(belief, belief_fields, message);
 }
 
@@ -483,9 +533,9 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
     if (!faults.empty()) return Error{joined(faults, "")};
     if (message.name().empty()) return Error{"name: missing"};
     if (!message.like().empty()) return Error{"like: only a file can be like another"};
-    if (!message.air_table().empty()) return Error{"air_table: only a file can name another"};
-    if (!message.wind_table().empty()) return Error{"wind_table: only a file can name another"};
-    if (message.air_table_landing_m() != 0.0) return Error{"air_table_landing_m: only a file can name a table"};
+    if (const auto refused = refuse_table_names(message); !refused) return refused.error();
+    if (const auto refused = refuse_table_names(message.believed()); !refused)
+        return Error{"believed." + refused.error().message};
     if (const auto& ground = message.ground(); !ground.grid_file().empty() || ground.grid_target_x_m() != 0.0 ||
                                                ground.grid_target_y_m() != 0.0 || ground.grid_landing_m() != 0.0)
         return Error{"ground.grid_file: only a file can name another, and say where the target lies in it"};
@@ -521,6 +571,9 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
     read(message.triggers(), trigger_fields, scenario);
     read(message.engines(), engine_fields, scenario.engines);
     read(message.guidance(), guidance_fields, scenario.guidance);
+    const auto parameters = parameters_of(message);
+    if (!parameters) return parameters.error();
+    scenario.parameters = *parameters;
     for (const auto& row : message.density_scale()) read(row, density_fields, scenario.density_scale.emplace_back());
     for (const auto& row : message.aero_scale()) read(row, aero_fields, scenario.aero_scale.emplace_back());
     for (const auto& row : message.air()) read(row, air_fields, scenario.air.emplace_back());
@@ -561,6 +614,11 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
         if (!error) return error.error();
         scenario.sensor_errors.push_back(*error);
     }
+    for (int i = 0; i < message.false_tones_size(); ++i) {
+        const auto tone = false_tone_from_message(message.false_tones(i), fmt::format("false_tones[{}]", i));
+        if (!tone) return tone.error();
+        scenario.false_tones.push_back(*tone);
+    }
     const auto impossible = simulation::impossible_values(scenario);
     if (!impossible.empty()) return Error{joined(impossible, "")};
     return scenario;
@@ -579,6 +637,7 @@ Result<simulation::Fault> fault_from_message(const v1::FaultInjection& message, 
     with_it_alone.wind_shifts.clear();
     with_it_alone.air_shifts.clear();
     with_it_alone.sensor_errors.clear();
+    with_it_alone.false_tones.clear();
     if (const auto* device = std::get_if<simulation::DeviceFault>(&*fault)) with_it_alone.device_faults = {*device};
     if (const auto* system = std::get_if<simulation::SystemFault>(&*fault)) with_it_alone.system_faults = {*system};
     if (const auto* reset = std::get_if<simulation::ComputerReset>(&*fault)) with_it_alone.computer_resets = {*reset};
@@ -589,6 +648,7 @@ Result<simulation::Fault> fault_from_message(const v1::FaultInjection& message, 
     if (const auto* shift = std::get_if<simulation::WindShift>(&*fault)) with_it_alone.wind_shifts = {*shift};
     if (const auto* air = std::get_if<simulation::AirShift>(&*fault)) with_it_alone.air_shifts = {*air};
     if (const auto* sensor = std::get_if<simulation::SensorError>(&*fault)) with_it_alone.sensor_errors = {*sensor};
+    if (const auto* tone = std::get_if<simulation::FalseTone>(&*fault)) with_it_alone.false_tones = {*tone};
     if (const auto found = simulation::impossible_values(with_it_alone); !found.empty()) return Error{found.front()};
     return fault;
 }
@@ -615,6 +675,7 @@ v1::Scenario scenario_to_message(const Scenario& scenario) {
     for (const auto& scale : scenario.density_scale) write(scale, density_fields, *message.add_density_scale());
     write(scenario.engines, engine_fields, *message.mutable_engines());
     write(scenario.guidance, guidance_fields, *message.mutable_guidance());
+    write_parameters(scenario.parameters, message);
     for (const auto& row : scenario.aero_scale) write(row, aero_fields, *message.add_aero_scale());
     if (scenario.believed) write_belief(*scenario.believed, *message.mutable_believed());
     for (const auto& row : scenario.air) write(row, air_fields, *message.add_air());
@@ -645,6 +706,11 @@ v1::Scenario scenario_to_message(const Scenario& scenario) {
     for (const auto& shift : scenario.wind_shifts) write(shift, wind_shift_fields, *message.add_wind_shifts());
     for (const auto& shift : scenario.air_shifts) write(shift, air_shift_fields, *message.add_air_shifts());
     for (const auto& error : scenario.sensor_errors) write_sensor_error(error, *message.add_sensor_errors());
+    for (const auto& tone : scenario.false_tones) {
+        auto& row = *message.add_false_tones();
+        write(tone, false_tone_fields, row);
+        row.set_tone(tone.tone.value);
+    }
     return message;
 }
 
@@ -712,13 +778,16 @@ Result<void> fill_grid(v1::Ground& ground, const std::filesystem::path& folder) 
     return {};
 }
 
-/// Replaces the names of tables by their rows.
-Result<void> fill_tables(v1::Scenario& message, const std::filesystem::path& folder) {
+/// Replaces the names of tables by their rows. Of a Scenario, or a Belief.
+template <typename OfAir>
+Result<void> fill_tables(OfAir& message, const std::filesystem::path& folder) {
     if (const std::string name = std::exchange(*message.mutable_air_table(), {}); !name.empty()) {
         if (message.air_size() > 0) return Error{"air_table: the scenario has air of its own"};
         const auto table = air_table_from_file(folder / name, message.air_table_landing_m());
         if (!table) return Error{"air_table: " + table.error().message};
         for (const auto& row : table->air) write(row, air_fields, *message.add_air());
+        if (message.density_scale_size() == 0)
+            for (const auto& row : table->scale) write(row, density_fields, *message.add_density_scale());
         if (message.winds_size() == 0 && message.wind_table().empty())
             for (const auto& row : table->winds) write(row, wind_fields, *message.add_winds());
     } else if (message.air_table_landing_m() != 0.0) {
@@ -731,6 +800,15 @@ Result<void> fill_tables(v1::Scenario& message, const std::filesystem::path& fol
         if (!winds) return Error{"wind_table: " + winds.error().message};
         for (const auto& row : *winds) write(row, wind_fields, *message.add_winds());
     }
+    return {};
+}
+
+/// Replaces the names of files by what they hold.
+Result<void> fill_files(v1::Scenario& message, const std::filesystem::path& folder) {
+    if (const auto filled = fill_tables(message, folder); !filled) return filled;
+    if (message.has_believed())
+        if (const auto filled = fill_tables(*message.mutable_believed(), folder); !filled)
+            return Error{"believed." + filled.error().message};
     if (message.has_ground()) return fill_grid(*message.mutable_ground(), folder);
     return {};
 }
@@ -741,7 +819,7 @@ Result<v1::Scenario> whole(const std::filesystem::path& file, const std::filesys
     if (!text) return text.error();
     auto message = parsed(*text, file.string());
     if (!message) return message;
-    if (const auto filled = fill_tables(*message, file.parent_path()); !filled)
+    if (const auto filled = fill_files(*message, file.parent_path()); !filled)
         return Error{fmt::format("{}: {}", file.string(), filled.error().message)};
     if (message->like().empty()) return message;
 
@@ -762,6 +840,7 @@ Result<v1::Scenario> whole(const std::filesystem::path& file, const std::filesys
     base->clear_name();  // the name is not inherited
     clear_lists_of(*message, *base);
     if (message->air_size() > 0) base->clear_density_scale();  // it belongs to the other's air
+    if (message->believed().air_size() > 0 && base->has_believed()) base->mutable_believed()->clear_density_scale();
     base->MergeFrom(*message);
     return base;
 }

@@ -24,6 +24,7 @@ flight::Load load_for(const Scenario& truth) {
     load.aim_east_m = scenario.guidance.aim_east_m;
     load.aim_north_m = scenario.guidance.aim_north_m;
     if (truth.believed) load.gravity_fraction = truth.believed->gravity_fraction;
+    load.parameters = scenario.parameters;
     load.entry_reference = make_entry_reference(scenario);
     return load;
 }

@@ -59,18 +59,20 @@ constexpr double spacing_m = 1000.0;
 constexpr double top_m = 250000.0;
 constexpr double wave_length_m = 30000.0;  // our assumption
 
-double scale_at(std::span<const DensityScale> scales, double altitude_m) {
-    if (scales.empty()) return 1.0;
-    if (altitude_m <= scales.front().altitude_m) return scales.front().scale;
-    for (std::size_t i = 1; i < scales.size(); ++i) {
-        const DensityScale& low = scales[i - 1];
-        const DensityScale& high = scales[i];
+/// A column of the rows at a height: linear between them, held outside; without rows `otherwise`.
+double at_height(std::span<const DensityScale> rows, double DensityScale::* column, double altitude_m,
+                 double otherwise) {
+    if (rows.empty()) return otherwise;
+    if (altitude_m <= rows.front().altitude_m) return rows.front().*column;
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+        const DensityScale& low = rows[i - 1];
+        const DensityScale& high = rows[i];
         if (altitude_m <= high.altitude_m) {
             const double part = (altitude_m - low.altitude_m) / (high.altitude_m - low.altitude_m);
-            return low.scale + part * (high.scale - low.scale);
+            return low.*column + part * (high.*column - low.*column);
         }
     }
-    return scales.back().scale;
+    return rows.back().*column;
 }
 
 }  // namespace
@@ -85,8 +87,8 @@ Atmosphere::Atmosphere(std::span<const DensityScale> scales, std::span<const Air
         const AirRow& high = table[above];
         const double part = (altitude_m - low.altitude_m) / (high.altitude_m - low.altitude_m);
         const double log_low = std::log(low.density_kgm3);
-        log_density_[i] =
-            log_low + part * (std::log(high.density_kgm3) - log_low) + std::log(scale_at(scales, altitude_m));
+        log_density_[i] = log_low + part * (std::log(high.density_kgm3) - log_low) +
+                          std::log(at_height(scales, &DensityScale::scale, altitude_m, 1.0));
         const double temperature_K = low.temperature_K + part * (high.temperature_K - low.temperature_K);
         speed_of_sound_mps_[i] = std::sqrt(sound_m2ps2K * temperature_K);
     }
@@ -103,6 +105,13 @@ Atmosphere::Atmosphere(std::span<const DensityScale> scales, std::span<const Air
         aloft_departure_ = 0.8 * dispersions.density_aloft_fraction * drawn;
         aloft_wave_ = 0.6 * std::numbers::sqrt2 * dispersions.density_aloft_fraction;
     }
+    by_height_ = std::ranges::any_of(scales, [](const DensityScale& row) { return row.deviation > 0.0; });
+    if (!by_height_) return;
+    drawn_ = drawn;
+    for (std::size_t i = 0; i < rows; ++i)
+        deviation_[i] = at_height(scales, &DensityScale::deviation, bottom_m + spacing_m * static_cast<double>(i), 0.0);
+    departure_fraction_ = 0.8 * drawn * at_height(scales, &DensityScale::deviation, 0.0, 0.0);
+    aloft_departure_ = 0.8 * drawn * at_height(scales, &DensityScale::deviation, grows_from_m + grows_over_m, 0.0);
 }
 
 Air Atmosphere::at(double altitude_m) const {
@@ -116,6 +125,13 @@ Air Atmosphere::at(double altitude_m) const {
 }
 
 double Atmosphere::departure(double altitude_m) const {
+    if (by_height_) {
+        const double place = std::clamp((altitude_m - bottom_m) / spacing_m, 0.0, static_cast<double>(rows - 2));
+        const auto below = static_cast<std::size_t>(place);
+        const double fraction = std::lerp(deviation_[below], deviation_[below + 1], place - static_cast<double>(below));
+        const double turn = std::sin(2.0 * std::numbers::pi * altitude_m / wave_length_m + wave_phase_rad_);
+        return std::max(0.2, 1.0 + fraction * (0.8 * drawn_ + 0.6 * std::numbers::sqrt2 * turn));
+    }
     if (wave_fraction_ == 0.0 && aloft_wave_ == 0.0) return 1.0;
     const double turn = std::sin(2.0 * std::numbers::pi * altitude_m / wave_length_m + wave_phase_rad_);
     const double below = departure_fraction_ + wave_fraction_ * turn;

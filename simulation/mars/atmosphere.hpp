@@ -23,7 +23,7 @@ struct Air {
 /// Range −1 … 250 km above the landing radius; above 250 km there is no air.
 /// The departure is our assumption: four fifths of the scenario's fraction at all heights alike, three fifths as a wave
 /// over height. Where the scenario has a fraction of its own aloft, the departure goes evenly to it from 50 to 65 km.
-/// [facts]
+/// [facts] Where its scale has deviations by height, the fraction is theirs.
 class Atmosphere {
   public:
     /// Without departure. `air`: empty: Gale's.
@@ -45,6 +45,9 @@ class Atmosphere {
 
     std::array<double, rows> log_density_{};
     std::array<double, rows> speed_of_sound_mps_{};
+    std::array<double, rows> deviation_{};  ///< by height, where `by_height_`
+    bool by_height_ = false;
+    double drawn_ = 0.0;  ///< of the part of the departure that is alike at all heights, in standard deviations
     double departure_fraction_ = 0.0, wave_fraction_ = 0.0, wave_phase_rad_ = 0.0;
     double shift_factor_ = 1.0;
     double aloft_departure_ = 0.0, aloft_wave_ = 0.0;  ///< as above, from 65 km up

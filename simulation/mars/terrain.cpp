@@ -3,12 +3,34 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace aeolis::simulation {
 namespace {
 
 constexpr double slope_reach_m =
     30000.0;  // our assumption: level beyond, else a slope at the site would be a mountain at entry
+
+/// A square of ground with heights drawn at its nodes, whose opposite edges are alike.
+std::shared_ptr<const HeightGrid> rough_tile(double roughness_m, double length_m, Random& random) {
+    constexpr std::size_t nodes = 64;  // chosen: by default it repeats after 3 km, more than the radar sees on engines
+    std::vector<double> drawn(nodes * nodes);
+    for (double& height_m : drawn) height_m = roughness_m * random.normal();
+    std::vector<double> heights_m;
+    heights_m.reserve((nodes + 1) * (nodes + 1));
+    for (std::size_t row = 0; row <= nodes; ++row)
+        for (std::size_t column = 0; column <= nodes; ++column)
+            heights_m.push_back(drawn[row % nodes * nodes + column % nodes]);
+    return std::make_shared<const HeightGrid>(HeightGrid::Shape{nodes + 1, nodes + 1, 0.0, 0.0, length_m},
+                                              std::move(heights_m));
+}
+
+/// Where a place lies in the tile that is laid beside itself.
+double in_tile_m(const HeightGrid& tile, double offset_m) {
+    const double side_m = static_cast<double>(tile.shape().columns - 1) * tile.shape().cell_m;
+    return offset_m - side_m * std::floor(offset_m / side_m);
+}
 
 }  // namespace
 
@@ -26,28 +48,46 @@ Terrain::Terrain(const Scenario& scenario, Random random)
     rise_M_ = east * target.east + north * target.north;
     east_M_ = target.east;
     north_M_ = target.north;
+    if (errors.terrain_roughness_m > 0.0)
+        tile_ = rough_tile(errors.terrain_roughness_m, scenario.ground.roughness_length_m, random);
+}
+
+double Terrain::uneven_m(double east_m, double north_m) const {
+    return (grid_ ? grid_->height_m(east_m, north_m) : 0.0) +
+           (tile_ ? tile_->height_m(in_tile_m(*tile_, east_m), in_tile_m(*tile_, north_m)) : 0.0);
+}
+
+HeightGrid::Rise Terrain::uneven_rise(double east_m, double north_m) const {
+    HeightGrid::Rise rise;
+    if (grid_) rise = grid_->rise(east_m, north_m);
+    if (tile_) {
+        const auto rough = tile_->rise(in_tile_m(*tile_, east_m), in_tile_m(*tile_, north_m));
+        rise.east += rough.east;
+        rise.north += rough.north;
+    }
+    return rise;
 }
 
 double Terrain::radius_m(const Vector3& p) const {
     const double level_beyond_m = slope_reach_m * rise_M_.norm();
     const double plane_m = landing_radius_m_ + height_m_ +
                            std::clamp(landing_radius_m_ * p.dot(rise_M_) / p.norm(), -level_beyond_m, level_beyond_m);
-    return grid_ ? plane_m + grid_->height_m(from_target_m(p, east_M_), from_target_m(p, north_M_)) : plane_m;
+    return is_uneven() ? plane_m + uneven_m(from_target_m(p, east_M_), from_target_m(p, north_M_)) : plane_m;
 }
 
 Vector3 Terrain::normal(const Vector3& p) const {
     const Vector3 up = p.normalized();
-    if (!grid_) return (up - (rise_M_ - rise_M_.dot(up) * up)).normalized();
-    const auto of_grid = grid_->rise(from_target_m(p, east_M_), from_target_m(p, north_M_));
-    const Vector3 rise_M = rise_M_ + of_grid.east * east_M_ + of_grid.north * north_M_;
+    if (!is_uneven()) return (up - (rise_M_ - rise_M_.dot(up) * up)).normalized();
+    const auto uneven = uneven_rise(from_target_m(p, east_M_), from_target_m(p, north_M_));
+    const Vector3 rise_M = rise_M_ + uneven.east * east_M_ + uneven.north * north_M_;
     return (up - (rise_M - rise_M.dot(up) * up)).normalized();
 }
 
-Terrain::Meeting Terrain::meet_grid(const Vector3& p, const Vector3& direction_M) const {
+Terrain::Meeting Terrain::meet_uneven(const Vector3& p, const Vector3& direction_M) const {
     constexpr double near_m = 0.01, near_fraction = 1.0e-5;  // chosen: below any noise of a radar
     constexpr double reach_m = 50000.0;                      // chosen: above its range
     constexpr int steps_max = 1000;  // chosen: at 65° over a grid with a slope of 7 a beam takes some 200
-    const double steepest = grid_->steepest() + rise_M_.norm();
+    const double steepest = (grid_ ? grid_->steepest() : 0.0) + (tile_ ? tile_->steepest() : 0.0) + rise_M_.norm();
     double range_m = 0.0;
     for (int step = 0; step < steps_max && range_m < reach_m; ++step) {
         const Vector3 at = p + range_m * direction_M;
@@ -63,7 +103,7 @@ Terrain::Meeting Terrain::meet_grid(const Vector3& p, const Vector3& direction_M
 }
 
 Terrain::Meeting Terrain::meet(const Vector3& p, const Vector3& direction_M) const {
-    if (grid_) return meet_grid(p, direction_M);
+    if (is_uneven()) return meet_uneven(p, direction_M);
     const double ground_m = radius_m(p);
     const Vector3 up = p.normalized();
     const Vector3 upright = normal(p);

@@ -32,6 +32,24 @@ TEST_CASE("ground's CRC of a parameter table is flight's: as built, and with any
     }
 }
 
+TEST_CASE("of a vehicle that is loaded with parameters of its own ground and flight count from those",
+          "[commands][parameters][R25]") {
+    const std::vector<std::pair<ParameterId, double>> loaded{{parameter::guidance_gain, 9.0},
+                                                             {parameter::constant_velocity_mps, 26.0}};
+    flight::Parameters vehicle;
+    for (const auto& [id, value] : loaded) flight::set_value(vehicle, id, value);
+    flight::ParameterTable table{vehicle};
+    CHECK(table.report().parameters_changed == 0);
+    commands::ParameterTable ground{tests::shipped_dictionary(), loaded};
+    CHECK(ground.crc() == table.report().parameter_crc);
+    CHECK(ground.check_deviations());  // by the defaults they would be too far apart
+    REQUIRE(ground.set(parameter::sufr_lead_s, 20.0));
+    table.stage(parameter::sufr_lead_s, 20.0);
+    CHECK(ground.crc() == table.crc_with_staged());
+    CHECK(ground.check_deviations());
+    CHECK(table.deviation_with_staged() == Approx(2.0 / 12.0));
+}
+
 TEST_CASE("ground refuses the changes of parameters that flight would refuse, and says why",
           "[commands][parameters][R25]") {
     commands::ParameterTable table{tests::shipped_dictionary()};

@@ -41,6 +41,35 @@ TEST_CASE("below its lowest altitude the parachute waits for its speed no longer
     CHECK_FALSE(all_hold(parachute(parameters, {500.0, 6000.0, 150.0}, bounds, 2)));
 }
 
+TEST_CASE("a parachute by range is fired there, and at its lowest speed at the latest", "[gnc][R17]") {
+    aeolis::flight::Parameters by_range;
+    by_range.parachute_range_m = 8000.0;
+    const InAir near{450.0, 9000.0, 110.0, 600.0, 2.0, 7999.0}, far{450.0, 9000.0, 110.0, 600.0, 2.0, 8001.0};
+    CHECK(parachute_due(by_range, near, bounds));
+    CHECK_FALSE(parachute_due(by_range, far, bounds));
+    CHECK_FALSE(parachute_due(parameters, near, bounds));
+    CHECK_FALSE(all_hold(parachute(by_range, near, bounds, 2)));
+    const auto fired = parachute(by_range, near, bounds, 3), awaited = parachute(by_range, far, bounds, 0);
+    CHECK(all_hold(fired));
+    CHECK(fired[0].quantity == Quantity::range_to_go_m);
+    CHECK(awaited[0].quantity == Quantity::range_to_go_m);
+    CHECK(parachute_due(by_range, {405.0, 9000.0, 110.0, 600.0, 1.8, 20000.0}, bounds));
+    CHECK(parachute_due(by_range, {450.0, 6000.0, 110.0, 600.0, 2.0, 20000.0}, bounds));
+    CHECK_FALSE(parachute_due(by_range, {470.0, 9000.0, 110.0, 600.0, 2.16, 7000.0}, bounds));  // Mach number
+    CHECK_FALSE(parachute_due(by_range, {450.0, 9000.0, 110.0, 721.0, 2.0, 7000.0}, bounds));   // pressure
+}
+
+TEST_CASE("straightening up begins its lead time before the parachute's range", "[gnc][R17]") {
+    aeolis::flight::Parameters by_range;
+    by_range.parachute_range_m = 8000.0;
+    constexpr double lead_m = 18.0 * 480.0;  // level at 500 m/s with 140 m/s of descent
+    CHECK(all_hold(sufr_start(by_range, {500.0, 12000.0, 140.0, 600.0, 2.1, 8000.0 + lead_m - 1.0}, 2.8, bounds)));
+    CHECK_FALSE(
+        all_hold(sufr_start(by_range, {500.0, 12000.0, 140.0, 600.0, 2.1, 8000.0 + lead_m + 1.0}, 1.0, bounds)));
+    CHECK_FALSE(all_hold(sufr_start(by_range, {700.0, 14000.0, 140.0, 600.0, 2.8, 9000.0}, 2.8, bounds)));
+    CHECK_FALSE(all_hold(sufr_start(parameters, {500.0, 12000.0, 140.0, 600.0, 2.1, 9000.0}, 1.0, bounds)));
+}
+
 TEST_CASE("slow or low, the parachute waits until its Mach number and pressure are what it is made for",
           "[gnc][R17][R27]") {
     const double pressure_Pa = parameters.parachute_pressure_max_Pa;

@@ -72,6 +72,47 @@ TEST_CASE("a table of the air is read in SI units, with its wind, and flown as i
     CHECK(scenario_to_text(*again) == scenario_to_text(*scenario));
 }
 
+TEST_CASE("a table has the scale of density and its deviation by height", "[scenario][atmosphere]") {
+    const Folder in;
+    const auto scenario = scenario_from_file(
+        in.file("s.textproto",
+                "name: \"s\" like: \"nominal\" air_table: \"" +
+                    in.file("air.csv", "altitude_m,temperature_K,density_kgm3,density_scale,"
+                                       "density_deviation\n0,220,0.02,1.05,0.04\n25000,190,0.002,1,0.04\n"
+                                       "50000,170,1e-4,1,0.04\n75000,150,6e-6,1,0.2\n100000,140,1e-7,1,0.2\n")
+                        .filename()
+                        .string() +
+                    "\""),
+        AEOLIS_SOURCE_DIR "/simulation/scenarios");
+    INFO((scenario ? "" : scenario.error().message));
+    REQUIRE(scenario);
+    REQUIRE(scenario->density_scale.size() == 5);
+    CHECK(scenario->density_scale[0].scale == 1.05);
+    CHECK(scenario->density_scale[3].deviation == 0.2);
+    CHECK(scenario->air[0].density_kgm3 == 0.02);  // the scale stands beside it
+}
+
+TEST_CASE("a forecast of the air may be believed, and the air be another", "[scenario][atmosphere][believed]") {
+    const Folder in;
+    in.file("forecast.csv", csv);
+    const auto scenario = scenario_from_file(
+        in.file("off.textproto", "name: \"off\" like: \"nominal\" believed { air_table: \"forecast.csv\" }"),
+        AEOLIS_SOURCE_DIR "/simulation/scenarios");
+    INFO((scenario ? "" : scenario.error().message));
+    REQUIRE(scenario);
+    CHECK(scenario->air.empty());
+    CHECK_FALSE(scenario->density_scale.empty());
+    REQUIRE(scenario->believed);
+    CHECK(scenario->believed->air.size() == 7);
+    CHECK(scenario->believed->winds.size() == 7);
+    CHECK(scenario->believed->density_scale.empty());  // that of nominal belongs to Gale's table
+    const auto lost = scenario_from_file(
+        in.file("lost.textproto", "name: \"lost\" like: \"nominal\" believed { air_table: \"none.csv\" }"),
+        AEOLIS_SOURCE_DIR "/simulation/scenarios");
+    REQUIRE_FALSE(lost);
+    CHECK_THAT(lost.error().message, Catch::Contains("believed.air_table: ") && Catch::Contains("cannot be opened"));
+}
+
 TEST_CASE("wind by height is linear between the rows of its table, held outside, and beside the steady wind",
           "[scenario][simulation][wind]") {
     const Folder in;

@@ -785,7 +785,15 @@ TEST_CASE("the program writes the command file that changes parameters, with the
         run(program(), "parameters --table 2 --after '" + (folder / "first.json").string() + "' guidance_gain=5");
     CHECK(second.code == 0);
     CHECK_THAT(second.text, Catch::Contains(crc_after({{"constant_velocity_mps", 31.0}})));  // 5 as built
+    // The vehicle of a scenario may be loaded with others.
+    std::ofstream{folder / "other.textproto"} << "name: \"other\"\nlike: \"nominal\"\n"
+                                                 "parameters { name: \"constant_velocity_mps\" value: 31 }\n";
+    const auto other = run(program(), "parameters --table 1 --scenario '" + (folder / "other.textproto").string() +
+                                          "' guidance_gain=4.25");
+    CHECK(other.code == 0);
+    CHECK_THAT(other.text, Catch::Contains(crc_after({{"guidance_gain", 4.25}, {"constant_velocity_mps", 31.0}})));
     const std::vector<std::pair<std::string, std::string>> wrong{
+        {"--scenario /nope.textproto guidance_gain=4", "--scenario /nope.textproto: cannot be opened"},
         {"guidance_gain=400", "guidance_gain: 400 is outside 1 to 10"},
         {"guidance_gian=4", "parameters.csv has no parameter 'guidance_gian'"},
         {"guidance_gain=4 guidance_gain=5", "named twice"},

@@ -608,7 +608,7 @@ TEST_CASE("an instructor breaks something in the rehearsal that goes on, and is 
     CHECK(of_another.status == 422);
     CHECK_THAT(of_another.body, Catch::Contains("run 2 is not the one that goes on (1)"));
     const Exchange refused[] = {
-        {"", "", R"({})", 422, "orbiter_outage, uhf_loss, wind_shift, air_shift or sensor_error is wanted"},
+        {"", "", R"({})", 422, "orbiter_outage, uhf_loss, wind_shift, air_shift, sensor_error or false_tone is wanted"},
         {"", "", R"({"computer_reset":false})", 422, "false asks for nothing"},
         {"", "", R"({"air_shift":{"duration_s":3,"fraction":7}})", 422, "air_shifts[0].fraction: 7"},
         {"", "", R"({"system_fault":{"duration_s":0}})", 422, "duration_s: 0"},

@@ -117,6 +117,7 @@ TEST_CASE("scenarios that differ in faults, errors, losses and name are expected
     other.uhf_losses = {{200.0, 30.0, 0.5}};
     other.wind_shifts = {{200.0, 30.0, 5.0, 5.0}};
     other.air_shifts = {{200.0, 30.0, -0.1}};
+    other.false_tones = {{200.0, 30.0, ToneId{1}}};
     other.sensor_errors = {{flight::Device::imu, flight::Unit::a, 200.0, 30.0, 0.1, 0.0}};
     other.bus_message_error_fraction = 0.01;
     other.radio.uhf_loss_fraction = 0.5;

@@ -143,11 +143,63 @@ TEST_CASE("what is believed begins as the truth, and keeps what it says itself",
     CHECK_FALSE(scenario_from_text(least, "s")->believed);
 }
 
+TEST_CASE("air and winds are believed as they are, or by tables of their own", "[scenario][believed]") {
+    const auto air = [](const std::string& density) {
+        return "air { altitude_m: 0 temperature_K: 210 density_kgm3: " + density +
+               " } air { altitude_m: 100000 temperature_K: 140 density_kgm3: 1e-7 } ";
+    };
+    const auto scenario = scenario_from_text(least + air("0.02") +
+                                                 "winds { altitude_m: 0 east_mps: 5 } winds { altitude_m: 9000 "
+                                                 "east_mps: 9 } density_scale { altitude_m: 0 scale: 1.1 } " +
+                                                 "believed { " + air("0.015") + "}",
+                                             "s");
+    INFO((scenario ? "" : scenario.error().message));
+    REQUIRE(scenario);
+    REQUIRE(scenario->believed);
+    const auto world = aeolis::simulation::as_believed(*scenario);
+    CHECK(scenario->air.at(0).density_kgm3 == 0.02);
+    CHECK(world.air.at(0).density_kgm3 == 0.015);
+    CHECK(world.density_scale.empty());  // it scaled the other air
+    CHECK(world.winds.at(0).east_mps == 5.0);
+    CHECK(scenario_to_text(*scenario_from_text(scenario_to_text(*scenario), "again")) == scenario_to_text(*scenario));
+    CHECK_THAT(error_of(least + "believed { " + air("2") + "}"), Catch::Contains("believed.air[0].density_kgm3: 2"));
+    CHECK_THAT(error_of(least + "believed { air_table: 'x.txt' }"),
+               Catch::Contains("believed.air_table: only a file can name another"));
+}
+
+TEST_CASE("the parameters of a vehicle are read by name, and one that flight could not have is refused",
+          "[scenario][parameters]") {
+    const auto scenario = scenario_from_text(
+        least + "parameters { name: 'parachute_range_m' value: 9000 } parameters { name: 'guidance_gain' value: 4 }",
+        "s");
+    INFO((scenario ? "" : scenario.error().message));
+    REQUIRE(scenario);
+    CHECK(scenario->parameters.parachute_range_m == 9000.0);
+    CHECK(scenario->parameters.guidance_gain == 4.0);
+    CHECK(scenario->parameters.sufr_lead_s == aeolis::flight::Parameters{}.sufr_lead_s);
+    const auto again = scenario_from_text(scenario_to_text(*scenario), "again");
+    REQUIRE(again);
+    CHECK(again->parameters == scenario->parameters);
+    CHECK_THAT(error_of(least + "parameters { name: 'parachute_rang_m' value: 9 }"),
+               Catch::Contains("parameters[0].name: parameters.csv has no parameter 'parachute_rang_m'"));
+    CHECK_THAT(error_of(least + "parameters { name: 'do_edl_margin_s' value: 9 }"),
+               Catch::Contains("parameters[0].name: do_edl_margin_s is fixed when flight is built"));
+    CHECK_THAT(error_of(least + "parameters { name: 'guidance_gain' value: 99 }"),
+               Catch::Contains("parameters[0].value: guidance_gain 99 is outside 1 … 10"));
+    CHECK_THAT(error_of(least + "parameters { name: 'guidance_gain' value: 4 } "
+                                "parameters { name: 'guidance_gain' value: 4 }"),
+               Catch::Contains("parameters[1].name: guidance_gain is named twice"));
+    CHECK_THAT(error_of(least + "parameters { name: 'guidance_gain' value: nan }"), Catch::Contains("parameters"));
+    CHECK_THAT(error_of(least + "guidance { reference_held_to_mps: 900 }"),
+               Catch::Contains("guidance.reference_held_to_mps"));
+}
+
 TEST_CASE("faults of air and sensors are read, written and read again, and one that cannot be is refused",
           "[scenario]") {
     const auto scenario = scenario_from_text(
         least + "air_shifts { begin_before_entry_s: -60 duration_s: 10 fraction: -0.1 } sensor_errors { device: "
-                "DEVICE_RADAR unit: REDUNDANT_UNIT_B begin_before_entry_s: -300 duration_s: 20 grows_per_s: 0.02 }",
+                "DEVICE_RADAR unit: REDUNDANT_UNIT_B begin_before_entry_s: -300 duration_s: 20 grows_per_s: 0.02 } "
+                "false_tones { begin_before_entry_s: 9 duration_s: 20 tone: 200 }",
         "s");
     INFO((scenario ? "" : scenario.error().message));
     REQUIRE(scenario);
@@ -156,6 +208,9 @@ TEST_CASE("faults of air and sensors are read, written and read again, and one t
     CHECK(scenario->sensor_errors[0].unit == flight::Unit::b);
     CHECK(scenario->sensor_errors[0].grows_per_s == 0.02);
     CHECK(scenario->air_shifts.at(0).fraction == -0.1);
+    CHECK(scenario->false_tones.at(0).tone == aeolis::ToneId{200});
+    CHECK_THAT(error_of(least + "false_tones { duration_s: 3 tone: 256 }"),
+               Catch::Contains("false_tones[0].tone: 256 is no id of a tone"));
     CHECK(scenario_to_text(*scenario_from_text(scenario_to_text(*scenario), "again")) == scenario_to_text(*scenario));
     CHECK_THAT(error_of(least + "sensor_errors { unit: REDUNDANT_UNIT_A duration_s: 3 }"),
                Catch::Contains("sensor_errors[0].device: missing"));

@@ -143,6 +143,65 @@ TEST_CASE("an attitude that is believed is off by that much in cruise, and is so
     CHECK(std::abs(shift.q_BB[0]) == Approx(1.0).margin(1e-12));
 }
 
+TEST_CASE("a parachute that is fired by range is fired there, in any air, and one by speed is not",
+          "[simulation][believed][gnc]") {
+    struct Mortar {
+        double range_m, speed_mps, mach;
+        bool by_range;
+    };
+    const auto mortar = [](const Scenario& scenario) {
+        tests::GncVenue venue(scenario, 1);
+        venue.run();
+        REQUIRE(venue.world().outcome() == Outcome::touchdown);
+        const auto* fired = venue.event(flight::gnc::Trigger::parachute);
+        REQUIRE(fired != nullptr);
+        bool by_range = false;
+        for (const auto& condition : fired->told.triggers[0].conditions)
+            by_range = by_range || condition.quantity == flight::Quantity::range_to_go_m;
+        return Mortar{fired->told.range_to_go_m, fired->truth.speed_mps, fired->told.mach, by_range};
+    };
+    // Air that is thinner or denser than believed from 40 km down.
+    const auto in_air = [](Scenario scenario, double scale) {
+        scenario.believed = belief_of(scenario);
+        for (DensityScale& row : scenario.density_scale)
+            if (row.altitude_m <= 40000.0) row.scale *= scale;
+        return scenario;
+    };
+    const Scenario by_speed = tests::undisturbed_scenario();
+    Scenario by_range = by_speed;
+    by_range.parameters.parachute_range_m = 7000.0;
+    by_range.parachute_speed_mps = 330.0;
+    for (const double scale : {0.92, 1.0, 1.08}) {
+        const Mortar speed = mortar(in_air(by_speed, scale)), range = mortar(in_air(by_range, scale));
+        INFO("air times " << scale << ": by speed " << speed.range_m << " m and " << speed.speed_mps
+                          << " m/s, by range " << range.range_m << " m and " << range.speed_mps << " m/s");
+        CHECK_FALSE(speed.by_range);
+        CHECK(speed.speed_mps == Approx(405.0).margin(1.0));
+        CHECK(range.by_range);
+        CHECK(range.range_m < 7000.0);
+        CHECK(range.range_m > 7000.0 - 4.0 / 64.0 * range.speed_mps);  // it holds for three cycles
+        CHECK(range.speed_mps > 330.0);
+        CHECK(range.mach < by_range.parameters.parachute_mach_max);
+    }
+}
+
+TEST_CASE("the vehicle is loaded with the parameters of its scenario", "[simulation][believed][parameters]") {
+    Scenario scenario = tests::undisturbed_scenario();
+    scenario.parameters.constant_velocity_mps = 29.0;
+    scenario.parameters.sky_crane_descent_rate_mps = 0.65;
+    CHECK(load_for(scenario).parameters == scenario.parameters);
+    tests::GncVenue venue(scenario, 1);
+    double slowest_in_approach_mps = 100.0;
+    while (venue.running()) {
+        venue.step();
+        if (venue.gnc().mode() == flight::gnc::Mode::constant_velocity)
+            slowest_in_approach_mps = std::min(slowest_in_approach_mps, venue.told().descent_rate_mps);
+    }
+    REQUIRE(venue.world().outcome() == Outcome::touchdown);
+    CHECK(slowest_in_approach_mps == Approx(29.0).margin(1.0));
+    CHECK(venue.world().touchdown()->vertical_mps == Approx(0.65).margin(0.06));
+}
+
 TEST_CASE("drag and lift are scaled by Mach number, linear between rows and held outside", "[simulation][believed]") {
     const std::vector<AeroScale> rows{{2.0, 1.1, 0.9}, {10.0, 0.9, 1.0}};
     CHECK(scaled({1.0, 1.0}, rows, 1.0).drag == 1.1);
@@ -263,6 +322,32 @@ TEST_CASE("the departure of the air grows from 50 km to what it is aloft", "[sim
     const Atmosphere alone{{}, {}, dispersions, Random{1, 3, Stream::density}};
     CHECK(departure(alone, 30'000.0) == 0.0);
     CHECK(departure(alone, 80'000.0) == Approx(departure(grown, 80'000.0)));
+}
+
+TEST_CASE("the departure of the air has the deviation that its scale has by height", "[simulation][atmosphere]") {
+    Dispersions dispersions{};
+    dispersions.density_fraction = 0.04;
+    const std::vector<DensityScale> rows{{0.0, 1.1, 0.02}, {40'000.0, 1.1, 0.02}, {60'000.0, 1.0, 0.12}};
+    const Atmosphere usual{{}, {}, dispersions, Random{1, 3, Stream::density}};
+    const Atmosphere by_height{rows, {}, dispersions, Random{1, 3, Stream::density}};
+    const Atmosphere plain{{}}, scaled_alone{rows};
+    const auto departure = [](const Atmosphere& air, const Atmosphere& from, double altitude_m) {
+        return air.at(altitude_m).density_kgm3 / from.at(altitude_m).density_kgm3 - 1.0;
+    };
+    for (const auto& [altitude_m, deviation] :
+         {std::pair{-1000.0, 0.02}, {30'000.0, 0.02}, {50'000.0, 0.07}, {60'000.0, 0.12}, {110'000.0, 0.12}})
+        CHECK(departure(by_height, scaled_alone, altitude_m) ==
+              Approx(deviation / 0.04 * departure(usual, plain, altitude_m)));
+    CHECK(by_height.departure_fraction() == Approx(0.5 * usual.departure_fraction()));
+    CHECK(departure(scaled_alone, plain, 30'000.0) == Approx(0.1));
+
+    Scenario scenario = tests::gale_scenario(60.0);
+    scenario.density_scale = rows;
+    scenario.believed = belief_of(scenario);
+    const Scenario nominal = as_believed(undispersed(scenario));
+    for (const DensityScale& row : nominal.density_scale) CHECK(row.deviation == 0.0);
+    scenario.density_scale[1].deviation = 0.6;
+    CHECK(found(scenario, "density_scale[1].deviation: 0.6 is outside 0 … 0.5"));
 }
 
 TEST_CASE("the parachute's area swings above Mach 1.4 alone, two times a second", "[simulation][parachute]") {

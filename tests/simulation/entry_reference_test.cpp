@@ -58,7 +58,7 @@ Flown fly(const Scenario& scenario, const flight::EntryReference& reference, dou
         if (disturbed && v <= end_mps) break;
         const double u = slowing ? vertical_lift(reference, v) + (disturbed ? disturbance.lift_to_drag : 0.0)
                                  : flight.sensed(at).lift_mps2 / flight.sensed(at).drag_mps2 *
-                                       std::cos(reference_bank_rad(9e3, 0.0));
+                                       std::cos(reference_bank_rad(scenario, 9e3, 0.0));
         const PointMass next = runge_kutta_step(at, 0.1, [&](double, const Vector3& p, const Vector3& w) -> Vector3 {
             const double drag = flight.sensed({p, w}).drag_mps2;
             return -drag * w.normalized() + u * drag * lift_direction(p, w, 0.0);
@@ -85,10 +85,35 @@ TEST_CASE("the reference is in the order that guidance needs, and ends at the ta
     CHECK(reference.rows[0].range_to_go_m == Approx(14500.0).margin(1500.0));
 }
 
-TEST_CASE("what the reference takes flight to do is what flight does", "[gnc][R27]") {
-    CHECK(EntryPlan::bank_before_guidance_deg == flight::Parameters{}.bank_before_guidance_deg);
-    CHECK(EntryPlan::sufr_duration_s == flight::Parameters{}.sufr_duration_s);
-    CHECK(EntryPlan::free_fall_s == flight::Parameters{}.powered_approach_delay_s);
+TEST_CASE("the reference's bank has its corners where the scenario puts them", "[gnc][R27]") {
+    Scenario scenario;
+    scenario.parameters.bank_before_guidance_deg = 70.0;
+    scenario.guidance.reference_turn_mps = 5000.0;
+    scenario.guidance.reference_held_from_mps = 4000.0;
+    scenario.guidance.reference_held_to_mps = 1200.0;
+    scenario.guidance.reference_up_mps = 1000.0;
+    const auto bank_deg = [&](double speed_mps) {
+        return reference_bank_rad(scenario, speed_mps, 50.0 * degree_rad) / degree_rad;
+    };
+    CHECK(bank_deg(5000.0) == Approx(70.0));
+    CHECK(bank_deg(4500.0) == Approx(60.0));
+    CHECK(bank_deg(4000.0) == Approx(50.0));
+    CHECK(bank_deg(1200.0) == Approx(50.0));
+    CHECK(bank_deg(1100.0) == Approx(25.0));
+    CHECK(bank_deg(1000.0) == 0.0);
+}
+
+TEST_CASE("the reference of a vehicle that fires by range ends its lead before that range, and meets the target",
+          "[gnc][R27]") {
+    Scenario scenario;
+    scenario.parameters.parachute_range_m = 9000.0;
+    scenario.parachute_speed_mps = 330.0;
+    const flight::EntryReference by_range = make_entry_reference(scenario);
+    REQUIRE(by_range.row_count == 64);
+    const auto& end = by_range.rows[0];
+    const double lead_m = scenario.parameters.sufr_lead_s * end.velocity_mps;
+    CHECK(end.range_to_go_m == Approx(9000.0 + lead_m).margin(0.25 * end.velocity_mps));
+    CHECK(end.velocity_mps > scenario.parachute_speed_mps + scenario.guidance.reference_end_mps);
 }
 
 TEST_CASE("its peak of drag is that of the published entry within five percent", "[gnc][R27]") {

@@ -348,6 +348,33 @@ TEST_CASE("a radar whose velocities are off or drift leads the vehicle with it",
     CHECK(touchdown_mps(0.0, 0.001) > sound_mps + 0.05);
 }
 
+TEST_CASE("a false tone is sent in place of the vehicle's own while it lasts, and the vehicle knows nothing of it",
+          "[simulation][links][faults]") {
+    Landing sound{tests::gale_scenario(900.0), 1};
+    sound.uplink(test::set_parameters(sound.solution()));
+    for (int i = 0; i < 64; ++i) sound.step();
+    sound.uplink(test::do_edl());
+    while (sound.truth().e_s < -620.0) sound.step();  // X-band sends tones
+    Landing told{sound};
+    const auto from = told.sclk();
+    told.inject(FalseTone{0.0, 20.0, ToneId{200}});
+    double false_s = 0.0;
+    while (told.sclk() < from + 60.0) {
+        for (const SentSymbol& symbol : sound.step().symbols) CHECK(symbol.tone != ToneId{200});
+        const CycleReport& report = told.step();
+        for (const SentSymbol& symbol : report.symbols) {
+            if (symbol.tone != ToneId{200}) continue;
+            CHECK(symbol.at >= from);
+            CHECK(symbol.at < from + 20.0);
+            false_s += static_cast<double>(symbol.end.microseconds - symbol.start.microseconds) / 1e6;
+        }
+    }
+    INFO(false_s << " s of it");
+    CHECK(false_s > 5.0);
+    CHECK(false_s < 20.1);
+    CHECK(std::ranges::equal(told.recording(), sound.recording()));
+}
+
 TEST_CASE("while the station is out nothing of what reaches Earth reaches ground; then each link is told as it is",
           "[simulation][links][faults]") {
     auto scenario = tests::gale_scenario(60.0);

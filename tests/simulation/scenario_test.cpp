@@ -120,6 +120,7 @@ TEST_CASE("each list of a scenario has a bound, and one that is too long is told
              [](Scenario& s, std::size_t rows) { s.orbiter_outages.resize(rows); });
     too_long("uhf_losses", scenario_rows_max, [](Scenario& s, std::size_t rows) { s.uhf_losses.resize(rows); });
     too_long("wind_shifts", scenario_rows_max, [](Scenario& s, std::size_t rows) { s.wind_shifts.resize(rows); });
+    too_long("false_tones", scenario_rows_max, [](Scenario& s, std::size_t rows) { s.false_tones.resize(rows); });
     too_long("air_shifts", scenario_rows_max, [](Scenario& s, std::size_t rows) { s.air_shifts.resize(rows); });
     too_long("sensor_errors", scenario_rows_max, [](Scenario& s, std::size_t rows) { s.sensor_errors.resize(rows); });
     too_long("aero_scale", scenario_rows_max, [](Scenario& s, std::size_t rows) { s.aero_scale.resize(rows); });

@@ -50,6 +50,42 @@ TEST_CASE("without height and slope the ground is the sphere of the landing radi
     CHECK_FALSE(flat.meet(p, p.normalized()).meets);
 }
 
+TEST_CASE("rough ground has the deviation and the slopes that its scenario says, others in each case, and is seamless",
+          "[simulation][terrain]") {
+    Scenario scenario = with_ground({});
+    scenario.dispersions.terrain_roughness_m = 2.0;
+    scenario.ground.roughness_length_m = 40.0;
+    const Terrain rough = terrain_of(scenario), other = terrain_of(scenario, 1);
+    const double radius_m = scenario.target.radius_m;
+    const auto height_m = [&](const Terrain& terrain, double north_m, double east_m) {
+        return terrain.radius_m(over_target(scenario, 0.0, north_m, east_m)) - radius_m;
+    };
+    double squares = 0.0, slopes = 0.0;
+    int differ = 0;
+    constexpr int side = 60;
+    for (int row = 0; row < side; ++row)
+        for (int column = 0; column < side; ++column) {
+            const double north_m = 40.0 * row, east_m = 40.0 * column, here_m = height_m(rough, north_m, east_m);
+            squares += here_m * here_m;
+            slopes += std::pow((height_m(rough, north_m, east_m + 40.0) - here_m) / 40.0, 2);
+            differ += std::abs(height_m(other, north_m, east_m) - here_m) > 0.1;
+        }
+    CHECK(std::sqrt(squares / (side * side)) == Approx(2.0).epsilon(0.1));
+    CHECK(std::sqrt(slopes / (side * side)) == Approx(std::sqrt(2.0) * 2.0 / 40.0).epsilon(0.1));
+    CHECK(differ > 0.8 * side * side);
+    // The seam of the square, 64 nodes from the target, is none.
+    for (const double north_m : {-2561.0, -1.0, 2559.0})
+        CHECK(height_m(rough, north_m, 37.0) == Approx(height_m(rough, north_m + 2.0, 37.0)).margin(0.8));
+    // A ray down meets it where it is, and its normal is that of the slope.
+    const Vector3 p = over_target(scenario, 500.0, 130.0, -75.0);
+    const auto below = rough.meet(p, -p.normalized());
+    REQUIRE(below.meets);
+    CHECK(below.range_m == Approx(rough.height_m(p)).margin(0.02));
+    CHECK(below.incidence_cosine == Approx(rough.normal(p).dot(p.normalized())));
+    // Who draws nothing has none.
+    CHECK(terrain_of(undispersed(scenario)).radius_m(p) == radius_m);
+}
+
 TEST_CASE("the ground rises towards its azimuth by its slope, and a ray meets it there", "[simulation][terrain]") {
     const Scenario scenario = with_ground({-30.0, 10.0, 90.0});
     const Terrain tilted = terrain_of(scenario);

@@ -62,6 +62,14 @@ Conditions sufr_start(const Parameters& parameters, const InAir& at, double dece
                                 at_least(Quantity::descent_rate_mps, at.descent_rate_mps, 1.0),
                                 at_most(Quantity::speed_mps, at.speed_mps, parameters.sufr_low_speed_mps));
     if (all_hold(low)) return low;
+    if (parameters.parachute_range_m > 0.0) {
+        const double level_mps =
+            std::sqrt(std::max(at.speed_mps * at.speed_mps - at.descent_rate_mps * at.descent_rate_mps, 1.0));
+        const double to_range_s = (at.range_to_go_m - parameters.parachute_range_m) / level_mps;
+        const Conditions near = list(at_most(Quantity::time_to_parachute_s, to_range_s, parameters.sufr_lead_s),
+                                     at_most(Quantity::speed_mps, at.speed_mps, parameters.sufr_low_speed_mps));
+        if (all_hold(near)) return near;
+    }
     const double to_parachute_s = (at.speed_mps - bounds.speed_mps) / std::max(deceleration_mps2, 1.0e-3);
     Conditions slow = list(at_most(Quantity::time_to_parachute_s, to_parachute_s, parameters.sufr_lead_s),
                            at_most(Quantity::speed_mps, at.speed_mps, bounds.speed_mps + parameters.sufr_near_mps));
@@ -79,8 +87,13 @@ Conditions parachute(const Parameters& parameters, const InAir& at, const Parach
     const Condition pressure =
         at_most(Quantity::dynamic_pressure_Pa, at.dynamic_pressure_Pa, parameters.parachute_pressure_max_Pa);
     const Condition mach = at_most(Quantity::mach, at.mach, parameters.parachute_mach_max);
-    Conditions conditions = list(low.holds && !slow.holds ? low : slow, pressure, mach);
-    conditions.push_back(slow.holds || low.holds ? held : low);
+    const bool by_range = parameters.parachute_range_m > 0.0;
+    const Condition near = at_most(Quantity::range_to_go_m, at.range_to_go_m, parameters.parachute_range_m);
+    const bool enough = slow.holds || low.holds || (by_range && near.holds);
+    const Condition& reached = by_range && near.holds ? near : low.holds && !slow.holds ? low : slow;
+    const Condition& awaited = by_range ? near : slow;
+    Conditions conditions = list(enough ? reached : awaited, pressure, mach);
+    conditions.push_back(enough ? held : low);
     return conditions;
 }
 

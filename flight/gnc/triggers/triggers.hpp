@@ -47,22 +47,24 @@ struct InAir {
     double descent_rate_mps = 0.0;
     double dynamic_pressure_Pa = 0.0;  ///< estimated from drag
     double mach = 0.0;                 ///< estimated
+    double range_to_go_m = 0.0;        ///< along the ground to where guidance aims
 };
-/// From ground's solution: the speed to wait for, and the lowest altitude at which to wait.
+/// From ground's solution: the speed to wait for, and the lowest altitude at which to wait. Of a vehicle that fires by
+/// range (`parachute_range_m`) it is the lowest speed at which to wait.
 struct ParachuteBounds {
     double speed_mps = 0.0;
     double altitude_min_m = 0.0;
 };
 
-/// Conditions for straighten-up (SUFR): the parachute's speed is near, or its lowest altitude is.
-/// The second way leaves time for the balance masses. A vehicle that would still be too fast for the parachute keeps
+/// Conditions for straighten-up (SUFR): the parachute's speed is near, or its range, or its lowest altitude.
+/// The last way leaves time for the balance masses. A vehicle that would still be too fast for the parachute keeps
 /// the lift that straightening up costs, down to a last altitude. `deceleration_mps2`: of the speed, drag less the
 /// effect of gravity; at zero or less the speed alone never fires.
 Conditions sufr_start(const Parameters& parameters, const InAir& at, double deceleration_mps2,
                       const ParachuteBounds& bounds);
 
-/// Whether the vehicle is slow enough or too low to wait any longer, and within the parachute's Mach number and
-/// pressure. Below a last altitude the parachute is due at any speed.
+/// Whether the vehicle is slow enough, near enough to the target or too low to wait any longer, and within the
+/// parachute's Mach number and pressure. Below a last altitude the parachute is due at any speed.
 bool parachute_due(const Parameters& parameters, const InAir& at, const ParachuteBounds& bounds);
 Conditions parachute(const Parameters& parameters, const InAir& at, const ParachuteBounds& bounds,
                      std::uint32_t cycles_true);

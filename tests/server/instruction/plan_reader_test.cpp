@@ -151,6 +151,13 @@ TEST_CASE("an inject of the library is used by its name, and each part that stan
               .find("only the IMU and the radar") != std::string::npos);
     CHECK(of_inject("when: by hand, fault: {sensor_error: {device: imu, unit: a, duration_s: 3}}")
               .find("has 'off_by' or 'grows_per_s'") != std::string::npos);
+    CHECK(of_inject("when: by hand, fault: {false_tone: {tone: check_faild, duration_s: 3}}")
+              .find("'check_faild' is no tone; the nearest name is 'check_failed'") != std::string::npos);
+    const auto tone = read("  - {inject: a, title: A, when: by hand, fault: {false_tone: {tone: check_failed, "
+                           "duration_s: 20}}}\n");
+    INFO(tone.findings_text());
+    REQUIRE(tone.plan);
+    CHECK(text_of(tone.plan->injects.at(0).fault) == "the vehicle sends tone 1 in place of its own, for 20 s");
     const auto off = read("  - {inject: a, title: A, when: by hand, fault: {sensor_error: {device: imu, unit: b, "
                           "off_by: 0.05, grows_per_s: 0.01, duration_s: 60}}}\n"
                           "  - {inject: b, title: B, when: by hand, fault: {air_shift: {fraction: -0.1, duration_s: "

@@ -5,6 +5,7 @@
 #include "tests/server/reconstruction/flown_landing.hpp"
 #include "tests/simulation/gale.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -114,6 +115,16 @@ TEST_CASE("without errors of vehicle, air and sensors the density is that of the
     CHECK(recorded.balance_pairs_gone().size() == 3);
     CHECK(density.back().at < *recorded.reported("PARACHUTE_DEPLOY"));
     CHECK(density.back().at - path->entry > 240.0);
+
+    // A vehicle of other mass and drag than the design's is judged by its own.
+    const KnownVehicle heavier{2.0 * 3153.0, 50.0, {{4.0, 1.0}, {6.0, 1.25}}};
+    const auto judged = density_along(*path, recorded, heavier);
+    for (const auto& [mach, times] : {std::pair{20.0, 2.0 / 1.25}, {5.0, 2.0 / 1.125}, {3.0, 2.0}}) {
+        const auto at = std::ranges::lower_bound(density, -mach, {}, [](const auto& point) { return -point.mach; });
+        const auto same = std::ranges::find(judged, at->at, &DensityPoint::at);
+        REQUIRE(same != judged.end());
+        CHECK(same->density_kgm3 == Approx(times * at->density_kgm3).epsilon(0.01));
+    }
 
     // Without the word that the parachute was deployed: only where it cannot be out, with the same values.
     const auto event = tests::shipped_dictionary().event("PARACHUTE_DEPLOY")->id;

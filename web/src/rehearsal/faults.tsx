@@ -83,6 +83,8 @@ export function faultWords(fault: Fault): string {
     return `${AIR} is ${percent} % ${fraction < 0 ? 'thinner' : 'denser'}, for ${duration_s} s`;
   }
   if (fault.sensor_error) return sensorWords(fault.sensor_error);
+  if (fault.false_tone)
+    return `the vehicle sends tone ${fault.false_tone.tone} in place of its own, for ${fault.false_tone.duration_s} s`;
   return system ? `${SYSTEM}, for ${system.duration_s} s` : `${COMPUTER} starts anew`;
 }
 

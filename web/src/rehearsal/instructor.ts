@@ -19,6 +19,7 @@ export interface Fault {
   wind_shift?: { duration_s: number; east_mps: number; north_mps: number };
   air_shift?: { duration_s: number; fraction: number };
   sensor_error?: { device: string; unit: string; duration_s: number; off_by?: number; grows_per_s?: number };
+  false_tone?: { duration_s: number; tone: number };
   computer_reset?: boolean;
 }
 export interface Intervention {

@@ -165,6 +165,11 @@ describe('the instructor’s panel', () => {
       'radar A measures velocities wrongly by 0.25 m/s more each second, for 9 s',
     ]);
   });
+  it('has words for a tone that says what is not so', () => {
+    expect(faultWords({ false_tone: { tone: 1, duration_s: 20 } })).toBe(
+      'the vehicle sends tone 1 in place of its own, for 20 s',
+    );
+  });
   it('injects what is chosen from the library, after showing what it does and what is to be done', async () => {
     server.routes['GET /plans'] = {
       json: {
