@@ -15,6 +15,16 @@ TEST_CASE("a scenario's own commands are checked before the start, by name and a
     scenario.commands.push_back({1180.0, "EDL_DO_EDL", {}, false});
     CHECK(check_script(scenario, tests::shipped_dictionary()));
 
+    // What ground's solution takes from the scenario has to be what the command takes.
+    scenario.parachute_speed_mps = 330.0;
+    const auto solution = check_script(scenario, tests::shipped_dictionary());
+    REQUIRE_FALSE(solution);
+    CHECK(solution.error().message ==
+          "commands[0]: argument 'parachute_speed_mps' of EDL_SET_PARAMETERS is 330 m/s: must be from 380 to 450 m/s");
+    scenario.commands[0].arguments = {{"parachute_speed_mps", 405.0}};
+    CHECK(check_script(scenario, tests::shipped_dictionary()));
+    scenario.parachute_speed_mps = 405.0;
+
     scenario.commands[1].command = "EDL_FROB";
     const auto unknown = check_script(scenario, tests::shipped_dictionary());
     REQUIRE_FALSE(unknown);

@@ -107,7 +107,7 @@ TEST_CASE("the reference of a vehicle that fires by range ends its lead before t
           "[gnc][R27]") {
     Scenario scenario;
     scenario.parameters.parachute_range_m = 9000.0;
-    scenario.parachute_speed_mps = 330.0;
+    scenario.parachute_speed_mps = 380.0;
     const flight::EntryReference by_range = make_entry_reference(scenario);
     REQUIRE(by_range.row_count == 64);
     const auto& end = by_range.rows[0];
