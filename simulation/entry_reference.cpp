@@ -84,7 +84,12 @@ double range_after_entry_m(const Scenario& scenario, const Atmosphere& atmospher
         const double altitude_m = at.p_MoB_M.norm() - scenario.target.radius_m;
         const double speed_mps = at.v_MB_M.norm();
         if (altitude_m <= scenario.backshell_altitude_m) break;
-        const bool near = to_aim_m - ground_m <= plan.parachute_range_m && plan.parachute_range_m > 0.0;
+        bool near = to_aim_m - ground_m <= plan.parachute_range_m && plan.parachute_range_m > 0.0;
+        if (near) {  // as flight, within the parachute's Mach number and pressure
+            const Air air = atmosphere.at(altitude_m);
+            near = speed_mps / air.speed_of_sound_mps <= plan.parachute_mach_max &&
+                   0.5 * air.density_kgm3 * speed_mps * speed_mps <= plan.parachute_pressure_max_Pa;
+        }
         if (since_mortar_s < 0.0 && (near || speed_mps <= scenario.parachute_speed_mps)) since_mortar_s = 0.0;
         if (heatshield && since_mortar_s >= plan.heatshield_delay_min_s && speed_mps <= scenario.heatshield_speed_mps) {
             heatshield = false;
@@ -151,7 +156,8 @@ Flight fly(const Scenario& scenario, const EntryFlight& flight, const Atmosphere
         slowing = slowing || sensed.drag_mps2 - climb_mps2 >= least_deceleration_mps2;
         if (slowing) result.nodes.push_back(node_of(flight, at, ground_m, bank_rad));
         const bool near = plan.parachute_range_m > 0.0 && speed_mps <= plan.sufr_low_speed_mps &&
-                          range_m - ground_m <= plan.parachute_range_m + plan.sufr_lead_s * speed_mps;
+                          range_m - ground_m <= plan.parachute_range_m +
+                                                    plan.sufr_lead_s * at.v_MB_M.cross(at.p_MoB_M.normalized()).norm();
         if (near || speed_mps <= end_mps || flight.altitude_m(at) <= scenario.backshell_altitude_m) break;
         const double upright = std::cos(bank_rad);
         const PointMass next = runge_kutta_step(at, step_s, [&](double, const Vector3& p, const Vector3& v) -> Vector3 {

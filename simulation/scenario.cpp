@@ -96,7 +96,8 @@ std::vector<Bounded> bounded_fields(const Scenario& s) {
         {"dispersions.density_aloft_fraction", s.dispersions.density_aloft_fraction, 0.0, 0.5},
         {"dispersions.parachute_oscillation_fraction", s.dispersions.parachute_oscillation_fraction, 0.0, 0.5},
         {"dispersions.radar_sand_mps", s.dispersions.radar_sand_mps, 0.0, 10.0},
-        {"dispersions.terrain_roughness_m", s.dispersions.terrain_roughness_m, 0.0, 0.2 * s.ground.roughness_length_m},
+        {"dispersions.terrain_roughness_m", s.dispersions.terrain_roughness_m, 0.0,
+         std::min(50.0, 0.2 * s.ground.roughness_length_m)},
         {"limits.propellant_left_min_kg", s.limits.propellant_left_min_kg, 0.0, 4000.0},
         {"limits.touchdown_vertical_max_mps", s.limits.touchdown_vertical_max_mps, 0.0, 10.0},
         {"limits.touchdown_horizontal_max_mps", s.limits.touchdown_horizontal_max_mps, 0.0, 10.0},
@@ -123,12 +124,10 @@ std::vector<Bounded> bounded_fields(const Scenario& s) {
         {"guidance.engine_impulse_s", s.guidance.engine_impulse_s, 50.0, 500.0},
         {"guidance.aim_east_m", s.guidance.aim_east_m, -aim_max_m, aim_max_m},
         {"guidance.aim_north_m", s.guidance.aim_north_m, -aim_max_m, aim_max_m},
-        {"guidance.reference_turn_mps", s.guidance.reference_turn_mps, s.guidance.reference_held_from_mps, 20000.0},
-        {"guidance.reference_held_from_mps", s.guidance.reference_held_from_mps, s.guidance.reference_held_to_mps,
-         20000.0},
-        {"guidance.reference_held_to_mps", s.guidance.reference_held_to_mps, s.guidance.reference_up_mps + 1.0,
-         20000.0},
-        {"guidance.reference_up_mps", s.guidance.reference_up_mps, s.parachute_speed_mps, 20000.0},
+        {"guidance.reference_turn_mps", s.guidance.reference_turn_mps, 100.0, 20000.0},
+        {"guidance.reference_held_from_mps", s.guidance.reference_held_from_mps, 100.0, 20000.0},
+        {"guidance.reference_held_to_mps", s.guidance.reference_held_to_mps, 100.0, 20000.0},
+        {"guidance.reference_up_mps", s.guidance.reference_up_mps, 100.0, 20000.0},
         {"guidance.reference_end_mps", s.guidance.reference_end_mps, 0.0, 500.0},
         {"steady_wind_east_mps", s.steady_wind_east_mps, -100.0, 100.0},
         {"steady_wind_north_mps", s.steady_wind_north_mps, -100.0, 100.0},
@@ -203,6 +202,23 @@ void check_masses(const Masses& masses, std::vector<std::string>& found) {
     if (!(std::abs(parts_kg - masses.entry_kg) <= 1.0))
         found.push_back("masses.entry_kg: " + number(masses.entry_kg) + " is not the sum of its parts, " +
                         number(parts_kg));
+}
+
+/// The corners of the entry reference descend, and the parachute comes after them.
+void check_reference(const Scenario& s, std::vector<std::string>& found) {
+    struct Corner {
+        const char* name;
+        double speed_mps, apart_min_mps;
+    };
+    const std::array corners{Corner{"guidance.reference_turn_mps", s.guidance.reference_turn_mps, 0.0},
+                             Corner{"guidance.reference_held_from_mps", s.guidance.reference_held_from_mps, 0.0},
+                             Corner{"guidance.reference_held_to_mps", s.guidance.reference_held_to_mps, 1.0},
+                             Corner{"guidance.reference_up_mps", s.guidance.reference_up_mps, 0.0},
+                             Corner{"triggers.parachute_speed_mps", s.parachute_speed_mps, 0.0}};
+    for (std::size_t i = 1; i < corners.size(); ++i)
+        if (!(corners[i - 1].speed_mps >= corners[i].speed_mps + corners[i - 1].apart_min_mps))
+            found.push_back(std::string{corners[i - 1].name} + ": " + number(corners[i - 1].speed_mps) +
+                            " lies below " + corners[i].name + ", " + number(corners[i].speed_mps));
 }
 
 void check_density_scale(const std::vector<DensityScale>& scales, std::vector<std::string>& found) {
@@ -618,6 +634,7 @@ std::vector<std::string> impossible_values(const Scenario& scenario) {
     check_tone_outages(scenario.radio.tone_outages, found);
     check_density_scale(scenario.density_scale, found);
     check_aero_scale(scenario.aero_scale, found);
+    check_reference(scenario, found);
     check_grid(scenario, found);
     check_air(scenario, found);
     check_belief(scenario, found);

@@ -254,7 +254,7 @@ void EdlMain::on(const ParametersUpdate& update, Outbox& out) {
     FixedVector<gnc::Condition, SolutionConditions::capacity() + gnc::Conditions::capacity() + 2> conditions;
     conditions.push_back(is(Quantity::gnc_enabled, configuration_.enabled, false));
     if (configuration_.enabled) return answer(out, update.tag, CommandRefusal::wrong_phase, conditions);
-    const SolutionConditions of_solution = conditions_of(update.parameters, out.now());
+    const SolutionConditions of_solution = conditions_of(update.parameters, out.now(), table_.built_in());
     if (!all_hold(of_solution)) return answer(out, update.tag, CommandRefusal::bad_argument, of_solution);
     const Sclk entry = Sclk::from_ticks(std::llround(update.parameters.entry_sclk * 64.0));
     const auto navigated = navigated_entry(update.parameters);

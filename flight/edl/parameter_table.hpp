@@ -50,6 +50,7 @@ class ParameterTable {
     explicit ParameterTable(const Parameters& built_in) : values_(built_in), built_in_(built_in) {}
 
     const Parameters& values() const { return values_; }
+    const Parameters& built_in() const { return built_in_; }
     std::uint16_t version() const { return version_; }  ///< ground's number; 0: as built in
     std::size_t staged() const { return staged_.size(); }
 

@@ -17,7 +17,7 @@ constexpr double clock_end_s = std::numeric_limits<std::uint32_t>::max();  // of
 
 }  // namespace
 
-SolutionConditions conditions_of(const command::EDL_SET_PARAMETERS& p, Sclk now) {
+SolutionConditions conditions_of(const command::EDL_SET_PARAMETERS& p, Sclk now, const Parameters& as_built) {
     const double radius_m = std::hypot(p.position_x_m, p.position_y_m, p.position_z_m);
     // Without what Mars's rotation adds at that distance.
     const double speed_mps = std::hypot(p.velocity_x_mps - gnc::mars_spin_rps * p.position_y_m,
@@ -34,7 +34,6 @@ SolutionConditions conditions_of(const command::EDL_SET_PARAMETERS& p, Sclk now)
     conditions.push_back(gnc::at_least(Quantity::epoch_before_entry_s, p.entry_sclk - p.epoch_sclk, 0.0));
     conditions.push_back(gnc::at_most(Quantity::time_to_uplinked_entry_s, to_entry_s, clock_end_s - now.seconds));
     // Backshell altitude and speed belong together: from there on, the powered approach needs its height.
-    constexpr Parameters as_built;
     const double ends_m = p.backshell_altitude_m - gnc::powered_descent::altitude_used_until_constant_velocity_m(
                                                        as_built, p.backshell_speed_mps);
     conditions.push_back(

@@ -32,7 +32,8 @@ inline gnc::Solution solution_of(const command::EDL_SET_PARAMETERS& p) {
 
 /// The conditions under which GNC can fly from these parameters.
 /// Each argument is already within its own range. Checked here: combinations of arguments, and their relation to `now`.
-SolutionConditions conditions_of(const command::EDL_SET_PARAMETERS& p, Sclk now);
+/// @param as_built  the table that the vehicle was loaded with
+SolutionConditions conditions_of(const command::EDL_SET_PARAMETERS& p, Sclk now, const Parameters& as_built);
 
 /// The entry to which the position and velocity of the parameters lead. R51
 struct NavigatedEntry {

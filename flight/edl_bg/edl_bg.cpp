@@ -25,7 +25,7 @@ void EdlBg::on(const NavigatedAttitude& attitude, Outbox& out) {
 }
 
 void EdlBg::on(const SetParametersCommand& command, Outbox& out) {
-    const auto conditions = conditions_of(command.arguments, out.now());
+    const auto conditions = conditions_of(command.arguments, out.now(), as_built_);
     if (all_hold(conditions))
         out.send(ModuleId::edl, ParametersUpdate{command.tag, command.arguments});
     else

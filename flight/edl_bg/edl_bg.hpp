@@ -22,7 +22,7 @@ namespace aeolis::flight {
 ///         (RADAR_LOST). The averages outlive the last beam by 5 s; navigation then continues without radar
 class EdlBg {
   public:
-    explicit EdlBg(const Load& load) : parameters_(load.parameters) {}
+    explicit EdlBg(const Load& load) : as_built_(load.parameters), parameters_(load.parameters) {}
 
     void on(const RadarReturns& returns, Outbox& out);
     void on(const NavigatedAttitude& attitude, Outbox& out);
@@ -37,6 +37,7 @@ class EdlBg {
   private:
     void watch_radar(Sclk now, Outbox& out);
 
+    Parameters as_built_;  ///< by which a solution is judged, whatever table flies
     ReceivedParameters parameters_;
     gnc::RadarBatch batch_;
     RadarReturns latest_;  ///< of this cycle; their attitude arrives after them

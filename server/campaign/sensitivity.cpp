@@ -51,6 +51,13 @@ constexpr std::array error_fields{
 };
 static_assert(sizeof(Dispersions) == error_fields.size() * sizeof(double), "an error belongs to no group");
 
+/// The deviations of density by height, where there are any, stand for those of the group "density".
+constexpr const char* density_by_height = "density_by_height";
+
+bool has_deviations(const simulation::Scenario& scenario) {
+    return std::ranges::any_of(scenario.density_scale, [](const auto& row) { return row.deviation > 0.0; });
+}
+
 double spread_of(const Moments& of) {
     return of.count() < 2 ? unknown : of.deviation();
 }
@@ -106,8 +113,11 @@ const std::vector<ErrorGroup>& error_groups() {
 
 std::vector<ErrorGroup> single_errors(const simulation::Scenario& scenario) {
     std::vector<ErrorGroup> singles;
+    const bool by_height = has_deviations(scenario);
+    if (by_height) singles.push_back({density_by_height, {density_by_height}});
     for (const ErrorField& field : error_fields)
-        if (scenario.dispersions.*field.member != 0.0) singles.push_back({field.name, {field.name}});
+        if (scenario.dispersions.*field.member != 0.0 && !(by_height && std::string_view{field.group} == "density"))
+            singles.push_back({field.name, {field.name}});
     return singles;
 }
 
@@ -117,8 +127,8 @@ simulation::Scenario with_errors(const simulation::Scenario& scenario, const Err
     for (const ErrorField& field : error_fields)
         if (std::ranges::find(group.fields, field.name) != group.fields.end())
             only.dispersions.*field.member = scenario.dispersions.*field.member;
-    if (std::ranges::find(group.fields, "density_fraction") != group.fields.end())
-        only.density_scale = scenario.density_scale;  // its deviations stand for the fraction
+    const auto has = [&](std::string_view name) { return std::ranges::find(group.fields, name) != group.fields.end(); };
+    if (has(density_by_height) || has("density_fraction")) only.density_scale = scenario.density_scale;
     return only;
 }
 

@@ -22,7 +22,7 @@ struct EntryReferenceOptions {
 int entry_reference(const EntryReferenceOptions& options) {
     const auto scenario = scenario_given(options.scenario, options.shared.scenarios);
     if (!scenario) return failed(scenario.error().message);
-    const flight::EntryReference reference = simulation::make_entry_reference(*scenario);
+    const flight::EntryReference reference = simulation::make_entry_reference(simulation::as_believed(*scenario));
     fmt::print("velocity_mps,range_to_go_m,drag_mps2,altitude_rate_mps,d_range_d_drag_s2,d_range_d_altitude_rate_s,"
                "d_range_d_lift_to_drag_m,lift_to_drag\n");
     for (std::uint32_t i = 0; i < reference.row_count; ++i) {

@@ -77,6 +77,7 @@ Result<std::string> trajectory_of(reconstruction::TrajectoryFormat format, const
 Result<reconstruction::KnownVehicle> vehicle_of(archive::Reader& reader, archive::RunId run) {
     reconstruction::KnownVehicle vehicle;
     const auto text = reader.scenario_text(run);
+    if (!text && text.error().internal) return text.error();
     if (!text) return vehicle;
     const auto scenario = scenario_from_text(*text, "the run's scenario");
     if (!scenario) return scenario.error();

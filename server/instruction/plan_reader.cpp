@@ -102,7 +102,7 @@ void PlanReader::false_tone(const YamlNode& node, v1::FalseTone& tone) {
     if (const YamlNode* given = node.member("tone")) {
         const std::string name = words(*given, "tone");
         const auto row = std::ranges::find(dictionary_.tones, name, &dictionary::ToneRow::name);
-        if (row != dictionary_.tones.end() && !name.empty())
+        if (row != dictionary_.tones.end() && row->set != dictionary::ToneSet::spare)
             tone.set_tone(row->id.value);
         else if (!name.empty())
             add(given->mark, procedures::unknown_name(name, "tone", dictionary_.tones,

@@ -119,7 +119,7 @@ void ScriptedLanding::equip_station(const simulation::Scenario& scenario, std::u
     // When a signal sent at the predicted entry is received on Earth.
     const Ert entry{landing_.correlation().scet_of(scenario.entry_sclk).microseconds +
                     static_cast<std::int64_t>(landing_.light_time_s() * 1e6)};
-    station_.explain_by({predict_silences(scenario, dictionary), landing_.ert_now(), entry});
+    station_.explain_by({predict_silences(simulation::as_believed(scenario), dictionary), landing_.ert_now(), entry});
     const auto predicted = predicted_flight(scenario, dictionary.mfsk);
     const TimeTable& predict_hz = predicted.doppler_hz;
     station_.watch_by({predict_hz, entry, predicted.reversals_s});

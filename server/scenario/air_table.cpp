@@ -217,6 +217,14 @@ Result<AirTable> air_table_from_file(const std::filesystem::path& file, double l
         if (!air) return reader.at(row.line, air.error().message);
         air->altitude_m -= landing_m;
         table.air.push_back(*air);
+        constexpr double scale_min = 0.1, scale_max = 10.0, deviation_max = 0.5;  // as a scenario takes them
+        if (const double scale = row[Column::scale].value_or(1.0); !(scale >= scale_min && scale <= scale_max))
+            return reader.at(row.line,
+                             fmt::format("a density_scale of {} is outside {} to {}", scale, scale_min, scale_max));
+        if (const double deviation = row[Column::deviation].value_or(0.0);
+            !(deviation >= 0.0 && deviation <= deviation_max))
+            return reader.at(row.line,
+                             fmt::format("a density_deviation of {} is outside 0 to {}", deviation, deviation_max));
         if (reader.has(Column::scale) || reader.has(Column::deviation))
             table.scale.push_back(
                 {air->altitude_m, row[Column::scale].value_or(1.0), row[Column::deviation].value_or(0.0)});

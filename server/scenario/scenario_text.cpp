@@ -786,8 +786,9 @@ Result<void> fill_tables(OfAir& message, const std::filesystem::path& folder) {
         const auto table = air_table_from_file(folder / name, message.air_table_landing_m());
         if (!table) return Error{"air_table: " + table.error().message};
         for (const auto& row : table->air) write(row, air_fields, *message.add_air());
-        if (message.density_scale_size() == 0)
-            for (const auto& row : table->scale) write(row, density_fields, *message.add_density_scale());
+        if (message.density_scale_size() > 0 && !table->scale.empty())
+            return Error{"air_table: the scenario has a density_scale of its own, and the table has another"};
+        for (const auto& row : table->scale) write(row, density_fields, *message.add_density_scale());
         if (message.winds_size() == 0 && message.wind_table().empty())
             for (const auto& row : table->winds) write(row, wind_fields, *message.add_winds());
     } else if (message.air_table_landing_m() != 0.0) {
@@ -840,7 +841,9 @@ Result<v1::Scenario> whole(const std::filesystem::path& file, const std::filesys
     base->clear_name();  // the name is not inherited
     clear_lists_of(*message, *base);
     if (message->air_size() > 0) base->clear_density_scale();  // it belongs to the other's air
-    if (message->believed().air_size() > 0 && base->has_believed()) base->mutable_believed()->clear_density_scale();
+    const bool believes_other_air =
+        message->believed().air_size() > 0 || (message->air_size() > 0 && base->believed().air_size() == 0);
+    if (believes_other_air && base->has_believed()) base->mutable_believed()->clear_density_scale();
     base->MergeFrom(*message);
     return base;
 }

@@ -4,6 +4,7 @@
 #include "server/archive/kept_request.hpp"
 #include "server/rehearsal/kept_requests.hpp"
 #include "server/rehearsal/nominal_flight.hpp"
+#include "simulation/mars/atmosphere.hpp"
 #include "simulation/mars/point_mass.hpp"
 #include "simulation/vectors.hpp"
 #include "telemetry/packet_stream.hpp"
@@ -88,7 +89,9 @@ std::string departure(const HeardFlight& heard, const HeardFlight& own, Sclk ent
 simulation::Scenario ground_scenario(const simulation::Scenario& scenario) {
     simulation::Scenario ground = expected_scenario(scenario);
     ground.name = scenario.name;
-    ground.dispersions = scenario.dispersions;  // how large errors may be: published, and drawn by the cases alone
+    // How large errors may be: published, and drawn by the cases alone.
+    ground.dispersions = scenario.dispersions;
+    ground.density_scale = simulation::with_deviations_of(ground.density_scale, scenario.density_scale);
     ground.disperse_before_entry_s = never_drawn_s;
     return ground;
 }

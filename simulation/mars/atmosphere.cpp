@@ -59,7 +59,8 @@ constexpr double spacing_m = 1000.0;
 constexpr double top_m = 250000.0;
 constexpr double wave_length_m = 30000.0;  // our assumption
 
-/// A column of the rows at a height: linear between them, held outside; without rows `otherwise`.
+}  // namespace
+
 double at_height(std::span<const DensityScale> rows, double DensityScale::* column, double altitude_m,
                  double otherwise) {
     if (rows.empty()) return otherwise;
@@ -75,7 +76,21 @@ double at_height(std::span<const DensityScale> rows, double DensityScale::* colu
     return rows.back().*column;
 }
 
-}  // namespace
+std::vector<DensityScale> with_deviations_of(std::span<const DensityScale> believed,
+                                             std::span<const DensityScale> truth) {
+    std::vector<double> heights_m;
+    for (const auto& rows : {believed, truth})
+        for (const DensityScale& row : rows) heights_m.push_back(row.altitude_m);
+    std::ranges::sort(heights_m);
+    const auto again = std::ranges::unique(heights_m);
+    heights_m.erase(again.begin(), again.end());
+    std::vector<DensityScale> both;
+    both.reserve(heights_m.size());
+    for (const double height_m : heights_m)
+        both.push_back({height_m, at_height(believed, &DensityScale::scale, height_m, 1.0),
+                        at_height(truth, &DensityScale::deviation, height_m, 0.0)});
+    return both;
+}
 
 Atmosphere::Atmosphere(std::span<const DensityScale> scales, std::span<const AirRow> air) {
     const std::span<const AirRow> table = air.empty() ? std::span<const AirRow>{gale} : air;

@@ -6,7 +6,9 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
+#include <vector>
 
 namespace aeolis::simulation {
 
@@ -14,6 +16,13 @@ struct Air {
     double density_kgm3 = 0.0;
     double speed_of_sound_mps = 0.0;
 };
+
+/// A column of rows by height: linear between them, held outside; without rows `otherwise`.
+double at_height(std::span<const DensityScale> rows, double DensityScale::* column, double altitude_m,
+                 double otherwise);
+/// What is believed of the scale of density, with the deviations that the truth's cases have.
+std::vector<DensityScale> with_deviations_of(std::span<const DensityScale> believed,
+                                             std::span<const DensityScale> truth);
 
 /// The air above the landing site: the scenario's table or that of Gale (see atmosphere.cpp), its scale by height, and
 /// a case's departure.
@@ -38,6 +47,8 @@ class Atmosphere {
     double departure_fraction() const { return departure_fraction_; }
     double wave_phase_rad() const { return wave_phase_rad_; }
     double aloft_departure() const { return aloft_departure_; }
+    /// Where deviations go by height: what was drawn, in standard deviations; else none.
+    std::optional<double> drawn_sigmas() const { return by_height_ ? std::optional{drawn_} : std::nullopt; }
 
   private:
     static constexpr std::size_t rows = 257;  ///< scale and table together, every kilometre from −2 km

@@ -136,11 +136,12 @@ void Vehicle::add_to(PlacedState& state, Sclk start) const {
 }
 
 void Vehicle::add_draws(const Scenario& scenario, std::vector<Draw>& draws) const {
+    if (const auto sigmas = atmosphere_.drawn_sigmas()) draws.push_back({"density_sigmas", *sigmas});
     draws.push_back({"density_fraction", atmosphere_.departure_fraction()});
     if (atmosphere_.departure_fraction() == 0.0 && atmosphere_.aloft_departure() != 0.0)  // else one draw makes both
         draws.push_back({"density_aloft_fraction", atmosphere_.aloft_departure()});
-    if (atmosphere_.departure_fraction() != 0.0 ||
-        atmosphere_.aloft_departure() != 0.0)  // else there is no wave either
+    if (atmosphere_.departure_fraction() != 0.0 || atmosphere_.aloft_departure() != 0.0 ||
+        atmosphere_.drawn_sigmas())  // else there is no wave either
         draws.push_back({"density_wave_phase_rad", atmosphere_.wave_phase_rad()});
     draws.push_back({"drag_fraction", aeroshell_factors_[0] - 1.0});
     draws.push_back({"slow_drag_fraction", aeroshell_factors_[1] - 1.0});

@@ -191,7 +191,7 @@ TEST_CASE("the parameters of a vehicle are read by name, and one that flight cou
                Catch::Contains("parameters[1].name: guidance_gain is named twice"));
     CHECK_THAT(error_of(least + "parameters { name: 'guidance_gain' value: nan }"), Catch::Contains("parameters"));
     CHECK_THAT(error_of(least + "guidance { reference_held_to_mps: 900 }"),
-               Catch::Contains("guidance.reference_held_to_mps"));
+               Catch::Contains("guidance.reference_held_to_mps: 900 lies below guidance.reference_up_mps, 980"));
 }
 
 TEST_CASE("faults of air and sensors are read, written and read again, and one that cannot be is refused",

@@ -3,6 +3,7 @@
 
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -19,6 +20,7 @@ TEST_CASE("each error belongs to one group, and a group's scenario has its error
     scenario.dispersions.density_aloft_fraction = 0.2;
     scenario.dispersions.parachute_oscillation_fraction = 0.1;
     scenario.dispersions.radar_sand_mps = 0.5;
+    scenario.dispersions.terrain_roughness_m = 0.5;
     scenario.dispersions.terrain_slope_deg = 0.0;
     std::set<std::string> fields;
     std::size_t count = 0;
@@ -39,6 +41,16 @@ TEST_CASE("each error belongs to one group, and a group's scenario has its error
     const auto singles = single_errors(scenario);
     CHECK(singles.size() == count - 1);
     for (const ErrorGroup& single : singles) CHECK(single.name != "terrain_slope_deg");
+
+    // Deviations of density by height stand for the two fractions.
+    scenario.density_scale = {{0.0, 1.1, 0.04}};
+    const auto by_height = single_errors(scenario);
+    CHECK(by_height.size() == singles.size() - 1);
+    CHECK(std::ranges::count(by_height, "density_by_height", &ErrorGroup::name) == 1);
+    CHECK(std::ranges::count(by_height, "density_fraction", &ErrorGroup::name) == 0);
+    CHECK(with_errors(scenario, by_height[0]).density_scale[0].deviation == 0.04);
+    CHECK(with_errors(scenario, {"wind", {"wind_mps"}}).density_scale[0].deviation == 0.0);
+    CHECK(with_errors(scenario, {"wind", {"wind_mps"}}).density_scale[0].scale == 1.1);
 }
 
 TEST_CASE("an influence is along the course and across it, and the budget is the root of the sum of squares",

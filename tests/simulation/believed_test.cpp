@@ -344,6 +344,13 @@ TEST_CASE("the departure of the air has the deviation that its scale has by heig
     Scenario scenario = tests::gale_scenario(60.0);
     scenario.density_scale = rows;
     scenario.believed = belief_of(scenario);
+    const auto joined = with_deviations_of(std::vector<DensityScale>{{10'000.0, 0.9}}, rows);
+    REQUIRE(joined.size() == 4);
+    CHECK(joined[1].scale == 0.9);
+    CHECK(joined[1].deviation == 0.02);
+    CHECK(joined[3].scale == 0.9);
+    CHECK(joined[3].deviation == 0.12);
+    CHECK(with_deviations_of({}, rows)[2].scale == 1.0);
     const Scenario nominal = as_believed(undispersed(scenario));
     for (const DensityScale& row : nominal.density_scale) CHECK(row.deviation == 0.0);
     scenario.density_scale[1].deviation = 0.6;
