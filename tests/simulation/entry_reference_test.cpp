@@ -111,7 +111,9 @@ TEST_CASE("the reference of a vehicle that fires by range ends its lead before t
     const flight::EntryReference by_range = make_entry_reference(scenario);
     REQUIRE(by_range.row_count == 64);
     const auto& end = by_range.rows[0];
-    const double lead_m = scenario.parameters.sufr_lead_s * end.velocity_mps;
+    const double level_mps =
+        std::sqrt(end.velocity_mps * end.velocity_mps - end.altitude_rate_mps * end.altitude_rate_mps);
+    const double lead_m = scenario.parameters.sufr_lead_s * level_mps;
     CHECK(end.range_to_go_m == Approx(9000.0 + lead_m).margin(0.25 * end.velocity_mps));
     CHECK(end.velocity_mps > scenario.parachute_speed_mps + scenario.guidance.reference_end_mps);
 }
