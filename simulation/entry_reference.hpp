@@ -8,8 +8,8 @@
 //
 // It flies in the simulation's own dynamics, under a bank profile chosen so that it ends at the target.
 //
-// Reference bank: by the corners of simulation/scenario.hpp, Guidance. The secant method on range finds the held bank. Only the vertical part of lift
-// is flown: the sideways part is assumed to cancel between reversals.
+// Reference bank: by the corners of simulation/scenario.hpp, Guidance. The secant method on range finds the held bank.
+// Only the vertical part of lift is flown: the sideways part is assumed to cancel between reversals.
 //
 // Partials: with velocity V as the independent variable, y = (height, flight path angle), dy/dV = F, ds/dV = G, u the
 // vertical lift-to-drag, range to go R = ∫ G dV to the end of the reference:

@@ -140,8 +140,7 @@ struct Guidance {
     double reference_held_from_mps = 4400.0;
     double reference_held_to_mps = 1100.0;
     double reference_up_mps = 980.0;
-    double reference_end_mps =
-        48.0;  ///< above the parachute's speed the reference ends, for SUFR. [facts] 453, 405 m/s
+    double reference_end_mps = 48.0;  ///< so much above the parachute's speed it ends, for SUFR. [facts] 453, 405 m/s
 };
 inline constexpr double aim_max_m = 20'000.0;  ///< our assumption: what a footprint's centre may be off
 
@@ -153,7 +152,7 @@ struct AeroScale {
     double lift = 1.0;
 };
 
-/// Atmosphere scale by height above the landing radius: density = table × scale. Linear between rows, held outside them.
+/// Scale of the density by height above the landing radius: density = table × scale. Linear between rows, held outside.
 struct DensityScale {
     double altitude_m = 0.0;
     double scale = 1.0;

@@ -76,8 +76,8 @@ class Judge {
             "judged, nor what there was no time for, nor what fell into a jump of time, nor what people did once it "
             "was over. What comes later than its limit earns less, and after twice the limit nothing; an alarm's "
             "acknowledgement counts in full within {:.0f} s and not at all after {:.0f} s. A line of the log is found "
-            "by its words, and serves one fault: read it, too. Times are the run's: at 10× a second of yours is ten of "
-            "them.",
+            "by its words, and serves one fault: read it, too. Times are the run's: at 10× a second of yours is ten "
+            "of them.",
             rubric_.title, rubric_.landing_worth, rubric_.alarm_within_s, rubric_.alarm_until_s));
         return std::move(score_);
     }

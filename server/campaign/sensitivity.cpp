@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/campaign/sensitivity.hpp"
 
+#include "simulation/mars/atmosphere.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -53,10 +55,6 @@ static_assert(sizeof(Dispersions) == error_fields.size() * sizeof(double), "an e
 
 /// The deviations of density by height, where there are any, stand for those of the group "density".
 constexpr const char* density_by_height = "density_by_height";
-
-bool has_deviations(const simulation::Scenario& scenario) {
-    return std::ranges::any_of(scenario.density_scale, [](const auto& row) { return row.deviation > 0.0; });
-}
 
 double spread_of(const Moments& of) {
     return of.count() < 2 ? unknown : of.deviation();
@@ -113,7 +111,7 @@ const std::vector<ErrorGroup>& error_groups() {
 
 std::vector<ErrorGroup> single_errors(const simulation::Scenario& scenario) {
     std::vector<ErrorGroup> singles;
-    const bool by_height = has_deviations(scenario);
+    const bool by_height = simulation::has_deviations(scenario.density_scale);
     if (by_height) singles.push_back({density_by_height, {density_by_height}});
     for (const ErrorField& field : error_fields)
         if (scenario.dispersions.*field.member != 0.0 && !(by_height && std::string_view{field.group} == "density"))

@@ -90,6 +90,9 @@ Result<std::string> command_file(const ParametersOptions& options, const diction
     if (!options.scenario.empty()) {
         const auto scenario = scenario_given(options.scenario, SharedOptions{}.scenarios);
         if (!scenario) return Error{"--scenario " + scenario.error().message};
+        // By the numbers of their rows: those of the dictionary that flight was built from.
+        if (const auto of_flight = dictionary_of_flight(options.directory); !of_flight)
+            return Error{"--scenario: " + of_flight.error().message};
         loaded = loaded_parameters(scenario->parameters);
     }
     commands::ParameterTable table{dictionary, loaded};

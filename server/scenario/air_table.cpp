@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/scenario/air_table.hpp"
 
+#include "server/scenario/text_file.hpp"
+
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
-#include <fstream>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -85,12 +86,9 @@ class TableReader {
     explicit TableReader(const std::filesystem::path& file) : file_(file.string()) {}
 
     Result<std::vector<TableRow>> rows(bool of_air) {
-        std::error_code ignored;
-        if (std::filesystem::is_directory(file_, ignored)) return Error{file_ + ": is a directory, not a table"};
-        if (std::filesystem::file_size(file_, ignored) > table_octets_max && !ignored)
-            return Error{fmt::format("{}: larger than {} octets: not a table", file_, table_octets_max)};
-        std::ifstream from{file_, std::ios::binary};
-        if (!from) return Error{file_ + ": cannot be opened"};
+        const auto text = bounded_text(file_, table_octets_max, "table");
+        if (!text) return text.error();
+        std::istringstream from{*text};
         std::vector<TableRow> rows;
         std::string line;
         for (std::size_t number = 1; std::getline(from, line); ++number) {

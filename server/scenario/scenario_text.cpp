@@ -374,25 +374,28 @@ Result<simulation::FalseTone> false_tone_from_message(const v1::FalseTone& row, 
     return tone;
 }
 
-/// What begins with the next cycle and lasts.
-template <typename Spell, typename Message>
-Result<simulation::Fault> spell_now(const Message& message, const Bindings<Spell>& fields, const char* name) {
+/// What begins with the next cycle and lasts. `read_row` makes the struct of the message, or says what is wrong with it.
+template <typename Message, typename ReadRow>
+Result<simulation::Fault> begun_now(const Message& message, const char* name, const ReadRow& read_row) {
     if (message.begin_before_entry_s() != 0.0)
         return Error{fmt::format("{}.begin_before_entry_s: it begins now", name)};
-    Spell spell;
-    read(message, fields, spell);
-    return simulation::Fault{spell};
+    auto row = read_row(message, name);
+    if (!row) return row.error();
+    return simulation::Fault{*row};
+}
+template <typename Spell, typename Message>
+Result<simulation::Fault> spell_now(const Message& message, const Bindings<Spell>& fields, const char* name) {
+    return begun_now(message, name, [&](const Message& row, const char*) {
+        Spell spell;
+        read(row, fields, spell);
+        return Result<Spell>{spell};
+    });
 }
 
 Result<simulation::Fault> read_fault(const v1::FaultInjection& message) {
     switch (message.fault_case()) {
-    case v1::FaultInjection::kDeviceFault: {
-        if (message.device_fault().begin_before_entry_s() != 0.0)
-            return Error{"device_fault.begin_before_entry_s: it begins now"};
-        auto fault = device_fault_from_message(message.device_fault(), "device_fault");
-        if (!fault) return fault.error();
-        return simulation::Fault{*fault};
-    }
+    case v1::FaultInjection::kDeviceFault:
+        return begun_now(message.device_fault(), "device_fault", device_fault_from_message);
     case v1::FaultInjection::kSystemFault: return spell_now(message.system_fault(), fault_fields, "system_fault");
     case v1::FaultInjection::kComputerReset:
         if (!message.computer_reset()) return Error{"computer_reset: false asks for nothing"};
@@ -404,20 +407,9 @@ Result<simulation::Fault> read_fault(const v1::FaultInjection& message) {
     case v1::FaultInjection::kUhfLoss: return spell_now(message.uhf_loss(), uhf_loss_fields, "uhf_loss");
     case v1::FaultInjection::kWindShift: return spell_now(message.wind_shift(), wind_shift_fields, "wind_shift");
     case v1::FaultInjection::kAirShift: return spell_now(message.air_shift(), air_shift_fields, "air_shift");
-    case v1::FaultInjection::kSensorError: {
-        if (message.sensor_error().begin_before_entry_s() != 0.0)
-            return Error{"sensor_error.begin_before_entry_s: it begins now"};
-        auto error = sensor_error_from_message(message.sensor_error(), "sensor_error");
-        if (!error) return error.error();
-        return simulation::Fault{*error};
-    }
-    case v1::FaultInjection::kFalseTone: {
-        if (message.false_tone().begin_before_entry_s() != 0.0)
-            return Error{"false_tone.begin_before_entry_s: it begins now"};
-        auto tone = false_tone_from_message(message.false_tone(), "false_tone");
-        if (!tone) return tone.error();
-        return simulation::Fault{*tone};
-    }
+    case v1::FaultInjection::kSensorError:
+        return begun_now(message.sensor_error(), "sensor_error", sensor_error_from_message);
+    case v1::FaultInjection::kFalseTone: return begun_now(message.false_tone(), "false_tone", false_tone_from_message);
     case v1::FaultInjection::FAULT_NOT_SET: break;
     }
     return Error{"the injection says nothing: device_fault, system_fault, computer_reset, station_outage, "

@@ -76,8 +76,13 @@ double at_height(std::span<const DensityScale> rows, double DensityScale::* colu
     return rows.back().*column;
 }
 
+bool has_deviations(std::span<const DensityScale> rows) {
+    return std::ranges::any_of(rows, [](const DensityScale& row) { return row.deviation > 0.0; });
+}
+
 std::vector<DensityScale> with_deviations_of(std::span<const DensityScale> believed,
                                              std::span<const DensityScale> truth) {
+    if (!has_deviations(truth)) return {believed.begin(), believed.end()};
     std::vector<double> heights_m;
     for (const auto& rows : {believed, truth})
         for (const DensityScale& row : rows) heights_m.push_back(row.altitude_m);
@@ -120,7 +125,7 @@ Atmosphere::Atmosphere(std::span<const DensityScale> scales, std::span<const Air
         aloft_departure_ = 0.8 * dispersions.density_aloft_fraction * drawn;
         aloft_wave_ = 0.6 * std::numbers::sqrt2 * dispersions.density_aloft_fraction;
     }
-    by_height_ = std::ranges::any_of(scales, [](const DensityScale& row) { return row.deviation > 0.0; });
+    by_height_ = has_deviations(scales);
     if (!by_height_) return;
     drawn_ = drawn;
     for (std::size_t i = 0; i < rows; ++i)

@@ -20,6 +20,8 @@ struct Air {
 /// A column of rows by height: linear between them, held outside; without rows `otherwise`.
 double at_height(std::span<const DensityScale> rows, double DensityScale::* column, double altitude_m,
                  double otherwise);
+/// Whether any row has a deviation of density.
+bool has_deviations(std::span<const DensityScale> rows);
 /// What is believed of the scale of density, with the deviations that the truth's cases have.
 std::vector<DensityScale> with_deviations_of(std::span<const DensityScale> believed,
                                              std::span<const DensityScale> truth);

@@ -792,6 +792,15 @@ TEST_CASE("the program writes the command file that changes parameters, with the
                                           "' guidance_gain=4.25");
     CHECK(other.code == 0);
     CHECK_THAT(other.text, Catch::Contains(crc_after({{"guidance_gain", 4.25}, {"constant_velocity_mps", 31.0}})));
+    // What it is loaded with goes by the rows of flight's own dictionary.
+    std::filesystem::copy(AEOLIS_SOURCE_DIR "/dictionaries/msl", folder / "dictionary");
+    std::ofstream{folder / "dictionary" / "parameters.csv", std::ios::app}
+        << "one_more,0,0,1,build,1,Fixed: of another build,[chosen]\n";
+    const auto foreign =
+        run(program(), "parameters --table 1 --dictionary '" + (folder / "dictionary").string() + "' --scenario '" +
+                           (folder / "other.textproto").string() + "' guidance_gain=4.25");
+    CHECK(foreign.code == 2);
+    CHECK_THAT(foreign.text, Catch::Contains("is not the one that flight was built from"));
     const std::vector<std::pair<std::string, std::string>> wrong{
         {"--scenario /nope.textproto guidance_gain=4", "--scenario /nope.textproto: cannot be opened"},
         {"guidance_gain=400", "guidance_gain: 400 is outside 1 to 10"},

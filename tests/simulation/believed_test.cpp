@@ -351,6 +351,9 @@ TEST_CASE("the departure of the air has the deviation that its scale has by heig
     CHECK(joined[3].scale == 0.9);
     CHECK(joined[3].deviation == 0.12);
     CHECK(with_deviations_of({}, rows)[2].scale == 1.0);
+    const std::vector<DensityScale> plain_rows{{0.0, 1.1}, {9'000.0, 0.7}};
+    CHECK(with_deviations_of(plain_rows, plain_rows).size() == 2);  // as it is, to the last bit
+    CHECK(with_deviations_of({}, plain_rows).empty());
     const Scenario nominal = as_believed(undispersed(scenario));
     for (const DensityScale& row : nominal.density_scale) CHECK(row.deviation == 0.0);
     scenario.density_scale[1].deviation = 0.6;

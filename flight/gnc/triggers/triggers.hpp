@@ -49,8 +49,8 @@ struct InAir {
     double mach = 0.0;                 ///< estimated
     double range_to_go_m = 0.0;        ///< along the ground to where guidance aims
 };
-/// From ground's solution: the speed to wait for, and the lowest altitude at which to wait. Of a vehicle that fires by
-/// range (`parachute_range_m`) it is the lowest speed at which to wait.
+/// From ground's solution: the speed to wait for, and the lowest altitude at which to wait. A vehicle that fires by
+/// range (`parachute_range_m`) waits for it down to this speed.
 struct ParachuteBounds {
     double speed_mps = 0.0;
     double altitude_min_m = 0.0;
