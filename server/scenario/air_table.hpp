@@ -11,8 +11,8 @@
 //
 // CSV      a heading that names each column with its unit: altitude_m or altitude_km; two or three of temperature_K,
 //          pressure_Pa and density_kgm3; east_mps and north_mps (velocity of the air); density_scale,
-//          by which density is multiplied, and density_deviation, its standard deviation as a fraction. Lines with # are
-//          comments
+//          by which density is multiplied, and density_deviation, its standard deviation as a fraction. Lines with #
+//          are comments
 // Profile  of Mars-GRAM (auxiliary profile): one line of heading, then height km, latitude, longitude, temperature K,
 //          pressure Pa, density kg/m³, eastward and northward wind m/s, and deviations that are not used. [facts]
 // Zero     as temperature, pressure or density: none; the gas law gives it from the other two

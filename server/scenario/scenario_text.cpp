@@ -374,7 +374,7 @@ Result<simulation::FalseTone> false_tone_from_message(const v1::FalseTone& row, 
     return tone;
 }
 
-/// What begins with the next cycle and lasts. `read_row` makes the struct of the message, or says what is wrong with it.
+/// What begins with the next cycle and lasts. `read_row` makes the struct of the message, or says what is wrong.
 template <typename Message, typename ReadRow>
 Result<simulation::Fault> begun_now(const Message& message, const char* name, const ReadRow& read_row) {
     if (message.begin_before_entry_s() != 0.0)
