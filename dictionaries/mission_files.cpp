@@ -28,8 +28,11 @@ MissionFile read_file(const std::filesystem::path& path, std::vector<Finding>& a
         findings.add(1, "cannot be read: " + path.string());
     else if (octets > file_octets_max)
         findings.add(1, "is larger than " + std::to_string(file_octets_max) + " octets");
-    else
-        file.text = std::string{std::istreambuf_iterator<char>{in}, {}};
+    else {
+        file.text.emplace(octets, '\0');
+        in.read(file.text->data(), static_cast<std::streamsize>(octets));
+        file.text->resize(static_cast<std::size_t>(in.gcount()));
+    }
     return file;
 }
 

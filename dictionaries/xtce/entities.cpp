@@ -86,20 +86,20 @@ std::optional<std::string> with_entities(std::string text, Findings& findings) {
     if (all.find('&') == std::string_view::npos) return text;
     Dtd dtd;
     std::string expanded;
-    std::size_t done = 0;
+    std::size_t done = 0, counted = 0;
     unsigned line = 1;
-    for (std::size_t at = 0; at < all.size();) {
+    for (std::size_t at = 0; (at = all.find_first_of("<&", at)) < all.size();) {
+        line += static_cast<unsigned>(std::ranges::count(all.substr(counted, at - counted), '\n'));
+        counted = at;
         auto end = end_of_unread(all, at);
         if (end == at && all.substr(at).starts_with("<!DOCTYPE")) {
             dtd = read_dtd(all, at);
             end = dtd.end;
         }
         if (end > at) {
-            line += static_cast<unsigned>(std::ranges::count(all.substr(at, end - at), '\n'));
             at = end;
             continue;
         }
-        if (all[at] == '\n') ++line;
         constexpr std::string_view no_name = "&;<>\"'=# \t\r\n";
         const auto close = all[at] == '&' ? all.find_first_of(no_name, at + 1) : std::string_view::npos;
         if (close == std::string_view::npos || all[close] != ';' || close == at + 1) {

@@ -35,7 +35,7 @@ TEST_CASE("the mortar's action fires the mortar; GNC has a parachute only once t
 }
 
 TEST_CASE("leaving the cruise stage is a process of several actions, and GNC learns when it is gone",
-          "[timeline][R26]") {
+          "[timeline][R26][release]") {
     Fixture f;
     action_named<"vent_coolant">().run(f.context);
     action_named<"cut_cruise_cables">().run(f.context);

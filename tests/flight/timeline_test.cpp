@@ -255,7 +255,7 @@ TEST_CASE("a row that holds the timeline is commanded again until it is verified
 }
 
 TEST_CASE("the shipped timeline is held before separation only, and asks the IMU only of the mortar",
-          "[timeline][R20][R50]") {
+          "[timeline][R20][R50][release]") {
     bool held = false;
     for (const TimepointSpec& spec : timeline_specs) {
         INFO(spec.name);

@@ -37,11 +37,16 @@ void wait_for(const std::function<bool()>& done) {
     while (!done()) std::this_thread::sleep_for(std::chrono::milliseconds{1});
 }
 
-/// An archive with the recorded landing of seed 7, to which a command, a fault and a note were given on the way.
-class Recorded {
+/// An archive of runs that are flown and forked.
+class Runs {
   public:
-    Recorded() {
+    explicit Runs(const std::filesystem::path& copied_from = {}) {
         spdlog::set_level(spdlog::level::off);
+        if (!copied_from.empty()) std::filesystem::copy_file(copied_from, file_);
+    }
+
+    /// Flies the landing of seed 7, and gives it a command, a fault and a note on the way.
+    void fly() const {
         auto pipeline = opened();
         {
             std::atomic<bool> begun{false};
@@ -146,12 +151,30 @@ class Recorded {
         REQUIRE(database->execute(sql));
     }
 
+    const std::filesystem::path& file() const { return file_; }
+
     static constexpr archive::RunId parent{1}, child{2};
 
   private:
     test::TemporaryFolder folder_;
     std::filesystem::path file_ = folder_ / "runs.db";
     const dictionary::Dictionary& dictionary_ = tests::shipped_dictionary();
+};
+
+/// The archive with the recorded landing, which is flown once for all who fork it.
+class Recorded : public Runs {
+  public:
+    Recorded() : Runs{flown().file()} {}
+
+  private:
+    static const Runs& flown() {
+        static const auto runs = [] {
+            auto made = std::make_unique<Runs>();
+            made->fly();
+            return made;
+        }();
+        return *runs;
+    }
 };
 
 const v1::EventDifference* named(const google::protobuf::RepeatedPtrField<v1::EventDifference>& all,

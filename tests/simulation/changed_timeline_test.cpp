@@ -281,9 +281,9 @@ TEST_CASE("no change that is accepted makes an unsafe landing of a safe one: 200
     check_changes(2012, 2000);
 }
 
-TEST_CASE("no change that is accepted in the hours before entry makes an unsafe landing of a safe one, 4 of any kind",
+TEST_CASE("no change that is accepted in the hours before entry makes an unsafe landing of a safe one, 2 of any kind",
           "[timeline][R19][R51][release]") {
-    try_changes(commanded(early_start_s), 3, 4, &Changes::early_moment_e_s);
+    try_changes(commanded(early_start_s), 3, 2, &Changes::early_moment_e_s);
 }
 
 TEST_CASE("no change that is accepted in the hours before entry makes an unsafe landing of a safe one, 200 of any kind",

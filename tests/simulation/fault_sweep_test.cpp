@@ -337,7 +337,7 @@ TEST_CASE(
     "faults of any unit and kind, at any moment and for any time: what is announced is so, what fails is told, and "
     "the rover lands",
     "[simulation][faults][R27][R50]") {
-    check_sweep(1, 16);
+    check_sweep(1, 8);
 }
 
 TEST_CASE("three hundred faults of any unit and kind, at any moment and for any time, end as docs/faults.md says",

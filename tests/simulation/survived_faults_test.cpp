@@ -119,7 +119,7 @@ void check_engines(std::uint64_t seed, double every_s, std::initializer_list<Dev
 TEST_CASE(
     "the IMU is silent for half a second at any time, or for two where attitude can be known, and the rover lands",
     "[simulation][faults][R27]") {
-    check_silences(1, 12, 10);
+    check_silences(1, 6, 5);
 }
 
 TEST_CASE("two hundred silences of the IMU are survived", "[.long][simulation][faults][R27]") {
