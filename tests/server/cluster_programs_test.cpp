@@ -127,7 +127,8 @@ std::uint64_t foreign_rows(const std::filesystem::path& copy, const std::filesys
     return rows;
 }
 
-/// Whether the follower holds what the origin does, and else what differs. While it says that it is behind, nothing is compared.
+/// Whether the follower holds what the origin does, and else what differs. Nothing is compared while it says that it
+/// is behind.
 bool same(const Serving& origin, const Serving& follower, std::vector<std::string>& differences) {
     if (follower.figure("following_behind_items") != 0.0) return false;
     const auto compared = archive::compare(origin.archive(), follower.archive());
